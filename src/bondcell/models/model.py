@@ -1,0 +1,69 @@
+"""What a bond model is: a name, a source, a range of validity and a function for each load."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bondcell.cell import Cell, FloatArray
+
+
+@dataclass(frozen=True)
+class Springs:
+    """A model's answer.
+
+    Parameters
+    ----------
+    stiffness
+        Stiffness of the bond on the broadcast shape of the cell [N/m for the normal load].
+    parts
+        Individual springs by name (``k_i``, ``k_int``, ``k_j``), same shape and unit.
+    relative_error
+        Bound of the evaluation's own numerical error, relative. It says nothing on how well the
+        model describes the cell: that is what the reference is for.
+    """
+
+    stiffness: FloatArray
+    parts: Mapping[str, FloatArray] = field(default_factory=dict)
+    relative_error: FloatArray | float = 0.0
+
+
+def everywhere(cell: Cell) -> NDArray[np.bool_]:
+    """Validity of a model that holds for every cell."""
+    return np.ones(cell.shape, dtype=bool)
+
+
+@dataclass(frozen=True)
+class Model:
+    """An entry of ``bondcell.MODELS``.
+
+    Parameters
+    ----------
+    name, title, summary
+        How it is called, in a word, a phrase and a sentence.
+    source
+        Where it comes from.
+    valid_range
+        Where it claims to hold, in words.
+    loads
+        Load name -> function ``(cell, **options) -> Springs``.
+    options
+        Option name -> what it does.
+    is_valid
+        Which points of a cell lie in the valid range.
+    is_reference
+        Whether it is the finite element reference, which `bondcell.evaluate` runs by geometry.
+    """
+
+    name: str
+    title: str
+    summary: str
+    source: str
+    valid_range: str
+    loads: Mapping[str, Callable[..., Springs]]
+    options: Mapping[str, str] = field(default_factory=dict)
+    is_valid: Callable[[Cell], NDArray[np.bool_]] = everywhere
+    is_reference: bool = False
