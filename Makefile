@@ -1,0 +1,68 @@
+# `make study` and `make test` set up what is missing; PYTHON=... chooses the interpreter of .venv.
+SHELL := /bin/sh
+.DELETE_ON_ERROR:
+.DEFAULT_GOAL := help
+
+BIN := .venv/bin
+RUN := $(BIN)/python -m
+STAMP := .venv/installed
+CORES ?= all
+# Rules may call the environment's commands by name.
+WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
+
+.PHONY: help study test test-all lint format lock schema bench setup system-deps clean
+
+help: ## list the targets
+	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
+
+study: setup ## run the default study to results/report.html
+	@sh scripts/system_deps.sh --optional
+	$(WITH_PATH) $(RUN) snakemake --cores $(CORES)
+
+test: lint ## lint, types and all tests but the slow ones
+	@sh scripts/system_deps.sh --optional
+	$(RUN) pytest -m "not slow"
+
+test-all: lint ## lint, types and every test
+	@sh scripts/system_deps.sh --optional
+	$(RUN) pytest
+
+lint: setup ## ruff, snakefmt and mypy, nothing is changed
+	$(RUN) ruff check .
+	$(RUN) ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(RUN) mypy
+
+format: setup ## format the sources
+	$(RUN) ruff check --fix .
+	$(RUN) ruff format .
+	$(BIN)/snakefmt Snakefile workflow
+
+schema: setup ## write params/scene.schema.json, the scene format for editors
+	$(BIN)/python scripts/write_schema.py
+
+bench: setup ## run the benchmarks; they are no tests
+	@sh scripts/system_deps.sh --optional
+	@for script in benchmarks/*.py; do echo "== $$script"; $(BIN)/python "$$script" || exit 1; done
+
+# Pins stay where they still fit; UPGRADE=1 takes the newest versions.
+lock: ## resolve requirements.lock again from pyproject.toml
+	@sh scripts/lock.sh $(if $(UPGRADE),--upgrade)
+
+setup: $(STAMP) ## make .venv and install the locked dependencies
+	@:
+
+system-deps: setup ## install the system libraries of gmsh, or say which
+	@sh scripts/system_deps.sh
+
+clean: ## remove results and caches, keep .venv
+	find results -mindepth 1 ! -name README.md -delete
+	rm -rf .snakemake .mypy_cache .ruff_cache .pytest_cache .hypothesis build dist
+
+# A stamp that names another folder came with a copied or moved checkout: its editable install is stale.
+ifneq ($(shell test -x $(BIN)/python && cat $(STAMP) 2>/dev/null),$(shell pwd -P))
+.PHONY: $(STAMP)
+endif
+
+$(STAMP): requirements.lock pyproject.toml
+	@PYTHON="$(PYTHON)" sh scripts/setup_venv.sh $@

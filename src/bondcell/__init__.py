@@ -1,0 +1,99 @@
+"""Normal stiffness of two spheres bonded through a matrix: analytic models and their reference.
+
+Everything below is loaded at its first use, so that ``import bondcell`` stays quick and a study
+that meshes nothing imports no finite elements.
+
+Examples
+--------
+>>> import bondcell
+>>> bondcell.Status.ok.name
+'ok'
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from bondcell.errors import (
+        BondcellError,
+        DataError,
+        InputError,
+        MissingLibrary,
+        SceneError,
+        UnknownModel,
+        UnsupportedLoad,
+        Violation,
+    )
+    from bondcell.evaluate import evaluate
+    from bondcell.models import MODELS
+    from bondcell.status import Status
+
+    __version__: str
+
+__all__ = [
+    "MODELS",
+    "BondcellError",
+    "DataError",
+    "InputError",
+    "MissingLibrary",
+    "SceneError",
+    "Status",
+    "UnknownModel",
+    "UnsupportedLoad",
+    "Violation",
+    "__version__",
+    "evaluate",
+]
+
+_HOME = {
+    "MODELS": "bondcell.models",
+    "BondcellError": "bondcell.errors",
+    "DataError": "bondcell.errors",
+    "InputError": "bondcell.errors",
+    "MissingLibrary": "bondcell.errors",
+    "SceneError": "bondcell.errors",
+    "Status": "bondcell.status",
+    "UnknownModel": "bondcell.errors",
+    "UnsupportedLoad": "bondcell.errors",
+    "Violation": "bondcell.errors",
+    "evaluate": "bondcell.evaluate",
+}
+
+
+class _Package(ModuleType):
+    """Keeps an import of the submodule ``evaluate`` from hiding the function of that name."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not (name in _HOME and isinstance(value, ModuleType)):
+            super().__setattr__(name, value)
+
+
+sys.modules[__name__].__class__ = _Package
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        value: Any = _version()
+    elif name in _HOME:
+        value = getattr(import_module(_HOME[name]), name)
+    else:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("bondcell")
+    except PackageNotFoundError:
+        return "0+unknown"

@@ -1,0 +1,106 @@
+"""The repository itself: lock file, make targets, tracked files."""
+
+import re
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from bondcell.fem.gmsh_session import SYSTEM_PACKAGES
+
+ROOT = Path(__file__).parents[2]
+LARGEST = 1_000_000
+"""Bytes a tracked file may have."""
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")
+
+
+def normalised(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+@pytest.fixture(scope="module")
+def pins() -> dict[str, list[str]]:
+    """Lock file: every requirement line with the hashes that follow it."""
+    found: dict[str, list[str]] = {}
+    for entry in re.split(r"\n(?=\S)", read("requirements.lock")):
+        lines = [line.strip() for line in entry.splitlines() if not line.strip().startswith("#")]
+        if lines:
+            found[lines[0].rstrip(" \\")] = re.findall(r"--hash=(\S+)", entry)
+    return found
+
+
+def test_every_pin_is_exact_and_hashed(pins):
+    assert len(pins) > 50
+    for requirement, hashes in pins.items():
+        assert re.fullmatch(r"[\w.\[\]-]+==[\w.+!]+( ; .+)?", requirement), requirement
+        assert hashes, requirement
+        assert all(re.fullmatch(r"sha256:[0-9a-f]{64}", value) for value in hashes), requirement
+
+
+def test_lock_names_no_address():
+    text = read("requirements.lock")
+    assert "://" not in text
+    assert "index" not in "".join(line for line in text.splitlines() if line.startswith("-"))
+
+
+def test_lock_covers_what_the_project_asks_for(pins):
+    project = tomllib.loads(read("pyproject.toml"))
+    wanted = [*project["build-system"]["requires"], *project["project"]["dependencies"]]
+    for extra in ("workflow", "dev"):
+        wanted += project["project"]["optional-dependencies"][extra]
+    names = {normalised(re.match(r"[\w.-]+", item)[0]) for item in wanted} - {"bondcell"}
+    assert names <= {normalised(re.match(r"[\w.-]+", pin)[0]) for pin in pins}
+
+
+def test_readme_names_targets_that_exist():
+    targets = set(re.findall(r"^([a-z][\w-]*):", read("Makefile"), flags=re.MULTILINE))
+    named = set(re.findall(r"\bmake ([a-z][\w-]*)", read("README.md") + read("CONTRIBUTING.md")))
+    assert {"study", "test"} <= named
+    assert named <= targets
+
+
+def test_readme_starts_with_the_two_commands():
+    lines = read("README.md").splitlines()
+    commands = [
+        line.split("#")[0].strip() for line in lines if re.match(r"(make|pip|pytest) ", line)
+    ]
+    assert commands[:2] == ["make study", "make test"]
+
+
+def tracked_files() -> list[Path]:
+    """What git tracks, or nothing where this is no git checkout (a source archive)."""
+    if not (ROOT / ".git").exists():
+        return []
+    done = subprocess.run(
+        ["git", "-c", f"safe.directory={ROOT}", "ls-files", "-z"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return [ROOT / name for name in done.stdout.split("\0") if name]
+
+
+def test_no_large_file_is_tracked():
+    sizes = {path: path.stat().st_size for path in tracked_files() if path.is_file()}
+    assert not [path for path, size in sizes.items() if size > LARGEST]
+
+
+def test_scripts_are_executable():
+    for name in (".ci/run", "scripts/setup_venv.sh", "scripts/system_deps.sh", "scripts/lock.sh"):
+        assert (ROOT / name).stat().st_mode & 0o100, name
+        assert read(name).startswith("#!")
+
+
+def test_script_and_message_name_the_same_system_packages():
+    done = subprocess.run(
+        ["sh", ROOT / "scripts" / "system_deps.sh", "--list"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.split() == SYSTEM_PACKAGES.split()
