@@ -12,8 +12,15 @@ import bondcell
 
 PACKAGE = Path(bondcell.__file__).parent
 HEAVY = {
-    *("gmsh", "matplotlib", "pandas", "pint", "pydantic"),
-    *("scipy", "skfem", "snakemake", "xarray"),
+    "gmsh",
+    "matplotlib",
+    "pandas",
+    "pint",
+    "pydantic",
+    "scipy",
+    "skfem",
+    "snakemake",
+    "xarray",
 }
 
 GROUND = {"cell", "errors", "status", "models", "fem"}
