@@ -1,0 +1,100 @@
+"""The finite element reference at many points: points that share a geometry share one assembly."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bondcell.cell import GEOMETRY, Cell
+from bondcell.errors import InputError, MissingLibrary
+from bondcell.outputs import PointResults
+from bondcell.status import Status
+
+IntArray = NDArray[np.int64]
+Progress = Callable[[int, int], None]
+
+
+def geometry_groups(cell: Cell) -> Iterator[IntArray]:
+    """Positions of the points that share a geometry, in order of first appearance.
+
+    Parameters
+    ----------
+    cell
+        A raveled cell (`Cell.ravel`).
+
+    Examples
+    --------
+    >>> cell = Cell.from_values(
+    ...     radius_i=1.0,
+    ...     gap=[0.1, 0.2, 0.1],
+    ...     young_i=1.0,
+    ...     young_m=[1.0, 2.0, 3.0],
+    ...     poisson_i=0.2,
+    ...     poisson_m=0.3,
+    ... )
+    >>> [group.tolist() for group in geometry_groups(cell.ravel())]
+    [[0, 2], [1]]
+    """
+    table = np.column_stack([getattr(cell, name) for name in GEOMETRY])
+    _, first, inverse = np.unique(table, axis=0, return_index=True, return_inverse=True)
+    order = np.argsort(inverse.ravel(), kind="stable")
+    bounds = np.cumsum(np.bincount(inverse.ravel()))[:-1]
+    groups = np.split(order, bounds)
+    for position in np.argsort(first, kind="stable"):
+        yield groups[position]
+
+
+def solve_points(
+    cell: Cell, load: str = "normal", progress: Progress | None = None, **options: Any
+) -> PointResults:
+    """Finite element stiffness at every point of a raveled cell, geometry by geometry.
+
+    A geometry that raises costs its own points only: they become NaN with the flag ``solver_failed``
+    (or ``mesh_failed``), a warning names it, the rest goes on.
+
+    Parameters
+    ----------
+    cell
+        A raveled cell.
+    load
+        Load name.
+    progress
+        Called as ``progress(points_done, points)`` after each geometry.
+    **options
+        ``bc`` and ``tolerance`` of `bondcell.fem.reference.solve`.
+    """
+    from bondcell.fem import reference
+
+    points = cell.radius_i.size
+    results = PointResults.empty(points)
+    done = 0
+    for group in geometry_groups(cell):
+        try:
+            answer = reference.solve(cell.take(group), load=load, **options)
+        except (InputError, MissingLibrary, ImportError):
+            raise
+        except Exception as error:  # one geometry must not lose the sweep
+            _record_failure(results, cell, group, error)
+        else:
+            results.stiffness[group] = answer.stiffness
+            results.error_estimate[group] = answer.error_estimate
+            results.status[group] = answer.status
+            results.dof[group] = answer.dof
+            results.seconds[group] = answer.seconds
+        done += group.size
+        if progress:
+            progress(done, points)
+    return results
+
+
+def _record_failure(results: PointResults, cell: Cell, group: IntArray, error: Exception) -> None:
+    status = Status.mesh_failed if "mesh" in type(error).__name__.lower() else Status.solver_failed
+    results.status[group] = status
+    where = ", ".join(f"{name}={getattr(cell, name)[group[0]]:.9g} m" for name in GEOMETRY)
+    line = f"{status.name}: {group.size} points at {where}: {type(error).__name__}: {error}"
+    results.failures.append(line)
+    warnings.warn(line, RuntimeWarning, stacklevel=3)

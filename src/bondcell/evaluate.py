@@ -1,0 +1,164 @@
+"""The stiffness of every bond cell in a study by one model: labelled arrays in, labelled arrays out."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bondcell.by_geometry import solve_points
+from bondcell.cell import Cell, FloatArray
+from bondcell.errors import InputError, UnknownModel, UnsupportedLoad, Violation
+from bondcell.inputs import cell_from_study
+from bondcell.models import MODELS
+from bondcell.models.model import Model
+from bondcell.outputs import OUTPUTS, PointResults, output_attributes, part_attributes
+from bondcell.status import Status
+
+CHUNK = 200_000
+"""Points given to an analytic model at once: bounds the memory of its intermediate arrays."""
+
+Block = tuple[slice, ...]
+Parts = dict[str, FloatArray]
+
+
+def evaluate(
+    study: xr.Dataset, model: str = "fsi", load: str = "normal", **options: Any
+) -> xr.Dataset:
+    """Stiffness of the bond at every point of a study.
+
+    Parameters
+    ----------
+    study
+        Inputs by the names of `bondcell.cell.UNITS` in SI units, as data variables or coordinates;
+        scalars or any dimensions, they broadcast against each other by name. Coordinates with other
+        names (``modulus_ratio``) are carried along.
+    model
+        A name in ``bondcell.MODELS``.
+    load
+        ``"normal"``; a model lists its loads in ``bondcell.MODELS[model].loads``.
+    **options
+        Options of the model, see ``bondcell.MODELS[model].options``; for ``"fe"`` these are ``bc``
+        and ``tolerance``.
+
+    Returns
+    -------
+    xarray.Dataset
+        On the broadcast dimensions: ``stiffness`` [N m-1 for the normal load], ``error_estimate``
+        (relative numerical error of that value, not of the model), ``status`` (codes of
+        `bondcell.Status`), ``dof``, ``seconds`` (wall time per point), and the model's own springs
+        (``k_i``, ``k_int``, ``k_j``) if it has any. A failed point is a NaN, its reason in ``status``.
+
+    Raises
+    ------
+    InputError
+        Names every wrong input with its value and what is allowed. `UnknownModel` and
+        `UnsupportedLoad` are kinds of it.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> study = xr.Dataset(
+    ...     {
+    ...         "radius_i": 7.5e-3,
+    ...         "young_i": 3e10,
+    ...         "poisson_i": 0.25,
+    ...         "young_m": 1.4e6,
+    ...         "poisson_m": 0.46,
+    ...     },
+    ...     coords={"gap": [1e-6, 5e-4, 0.1]},
+    ... )
+    >>> out = evaluate(study, model="fsi")
+    >>> out.k_int.round(4).values
+    array([284230.5331,  84065.1275,   2358.822 ])
+    >>> dict(out.sizes)
+    {'gap': 3}
+    """
+    chosen = _checked_model(model, load, options)
+    cell, dims = cell_from_study(study)
+    if chosen.is_reference:
+        results, parts = solve_points(cell.ravel(), load=load, **options), {}
+    else:
+        results, parts = _evaluate_analytic(chosen, load, cell, options)
+    attributes = output_attributes(load)
+    variables = {
+        name: (dims, getattr(results, name).reshape(cell.shape), attributes[name])
+        for name in OUTPUTS
+    }
+    for name, part in parts.items():
+        variables[name] = (dims, part, part_attributes(name, model, load))
+    coords = {name: coord for name, coord in study.coords.items() if set(coord.dims) <= set(dims)}
+    return xr.Dataset(variables, coords, {"model": model, "load": load, **options})
+
+
+def blocks(shape: tuple[int, ...], limit: int) -> Iterator[Block]:
+    """Cut an array's index space into rectangular blocks of at most `limit` points.
+
+    Rectangular, so that an input which does not vary along an axis stays of size 1 along it.
+
+    Examples
+    --------
+    >>> [tuple(part.stop for part in block) for block in blocks((3, 4), limit=8)]
+    [(2, 4), (3, 4)]
+    """
+    if not shape:
+        yield ()
+        return
+    step = max(1, limit // max(1, int(np.prod(shape[1:]))))
+    for start in range(0, shape[0], step):
+        stop = min(start + step, shape[0])
+        for others in blocks(shape[1:], limit):
+            yield (slice(start, stop), *others)
+
+
+def _checked_model(name: str, load: str, options: Mapping[str, Any]) -> Model:
+    if not isinstance(name, str) or name not in MODELS:
+        raise UnknownModel([Violation("model", name, f"one of {', '.join(MODELS)}")])
+    model = MODELS[name]
+    if not isinstance(load, str) or load not in model.loads:
+        allowed = f"one of {', '.join(model.loads)} for model {name!r}"
+        raise UnsupportedLoad([Violation("load", load, allowed)])
+    known = ", ".join(model.options) or "none"
+    unknown = [
+        Violation(option, value, f"one of the options of model {name!r}: {known}")
+        for option, value in options.items()
+        if option not in model.options
+    ]
+    if unknown:
+        raise InputError(unknown)
+    return model
+
+
+def _evaluate_analytic(
+    model: Model, load: str, cell: Cell, options: Mapping[str, Any]
+) -> tuple[PointResults, Parts]:
+    results, parts = PointResults.empty(cell.shape), Parts()
+    outside = np.empty(cell.shape, dtype=bool)
+    start = time.perf_counter()
+    for block in blocks(cell.shape, CHUNK):
+        piece = _cut(cell, block)
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            springs = model.loads[load](piece, **options)
+        results.stiffness[block] = springs.stiffness
+        results.error_estimate[block] = springs.relative_error
+        outside[block] = ~model.is_valid(piece)
+        for name, part in springs.parts.items():
+            parts.setdefault(name, np.empty(cell.shape))[block] = part
+    results.seconds[...] = (time.perf_counter() - start) / results.seconds.size
+    results.status[...] = np.where(outside, Status.outside_valid_range, Status.ok)
+    diverges = ~np.isfinite(results.stiffness)
+    results.status[diverges] = Status.diverges
+    results.stiffness[diverges] = np.nan
+    results.error_estimate[diverges] = np.nan
+    return results, parts
+
+
+def _cut(cell: Cell, block: Block) -> Cell:
+    def cut(value: FloatArray) -> FloatArray:
+        pairs = zip(block, value.shape, strict=True)
+        return value[tuple(part if size > 1 else slice(None) for part, size in pairs)]
+
+    return Cell(**{name: cut(value) for name, value in cell.as_dict().items()})

@@ -1,0 +1,72 @@
+"""Which source files of this package a module rests on: what has to be redone after an edit."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+
+
+def source_files(*modules: str) -> list[Path]:
+    """Source files of the package that the modules import when they are loaded, their own included.
+
+    Read from the import statements at module level, so nothing is imported to find out. What a function
+    imports when it is called is not followed: name that module too if the work calls it. The file of a
+    parent package counts only where it is itself imported from.
+
+    Parameters
+    ----------
+    *modules
+        Dotted names, ``"bondcell.storage"``.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Sorted.
+
+    Examples
+    --------
+    >>> [path.name for path in source_files("bondcell.storage")]
+    ['errors.py', 'storage.py']
+    """
+    found: set[Path] = set()
+    waiting = [_path(module) for module in modules]
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting.extend(_imported(path))
+    return sorted(found)
+
+
+def package_files(package: str) -> list[Path]:
+    """Every source file of a package or subpackage (``"bondcell.fem"``), sorted."""
+    return sorted(_path(package).parent.glob("**/*.py"))
+
+
+def _path(module: str) -> Path:
+    place = PACKAGE.joinpath(*module.split(".")[1:])
+    return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
+
+
+@lru_cache(maxsize=None)
+def _imported(path: Path) -> tuple[Path, ...]:
+    tree = ast.parse(path.read_bytes(), filename=str(path))
+    return tuple(_path(name) for name in _imported_modules(tree) if _path(name).is_file())
+
+
+def _imported_modules(tree: ast.Module) -> Iterator[str]:
+    root = PACKAGE.name
+    for statement in tree.body:
+        if isinstance(statement, ast.Import):
+            yield from (a.name for a in statement.names if a.name.split(".")[0] == root)
+        elif isinstance(statement, ast.ImportFrom) and statement.module:
+            if statement.module.split(".")[0] == root:
+                submodules = [f"{statement.module}.{alias.name}" for alias in statement.names]
+                inside = [name for name in submodules if _path(name).is_file()]
+                yield from inside
+                if len(inside) < len(submodules):
+                    yield statement.module

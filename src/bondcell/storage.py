@@ -1,0 +1,130 @@
+"""Datasets in files: written whole or not at all, read whole or refused."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from bondcell.errors import DataError, Violation
+
+CONVENTIONS = "CF-1.11"
+READABLE = "a complete netCDF-4 file"
+
+
+def write_dataset(
+    dataset: xr.Dataset, path: str | Path, groups: Mapping[str, xr.Dataset] | None = None
+) -> Path:
+    """Write a dataset to a compressed netCDF-4 file that appears under its name only when complete.
+
+    Parameters
+    ----------
+    dataset
+        The root group; gets the CF ``Conventions`` attribute.
+    path
+        The file; its folder is made if need be, an existing file is replaced.
+    groups
+        More datasets, each stored in the netCDF group of its name.
+
+    Returns
+    -------
+    pathlib.Path
+        `path`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> path = write_dataset(xr.Dataset({"gap": ("gap", [1e-4, 2e-4])}), folder / "study.nc")
+    >>> read_dataset(path).gap.values
+    array([0.0001, 0.0002])
+    """
+    target = Path(path)
+    with replacing(target) as temporary:
+        root = dataset.assign_attrs({"Conventions": CONVENTIONS, **dataset.attrs})
+        _write_group(root, temporary, None)
+        for name, group in (groups or {}).items():
+            _write_group(group, temporary, name)
+    return target
+
+
+def read_dataset(path: str | Path, group: str | None = None) -> xr.Dataset:
+    """Read a whole dataset into memory, so that a damaged file is noticed here and not later.
+
+    Parameters
+    ----------
+    path
+        A file that `write_dataset` made; every stored block carries a checksum, which is verified.
+    group
+        Name of the netCDF group, the root group by default.
+
+    Raises
+    ------
+    DataError
+        The file is missing, half-written, damaged or has no such group.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise DataError([Violation("file", str(source), "an existing file")], str(source))
+    try:
+        with xr.open_dataset(source, engine="netcdf4", group=group) as dataset:
+            return dataset.load()
+    except (OSError, RuntimeError, ValueError, KeyError, AttributeError, IndexError) as error:
+        missing_group = isinstance(error, OSError) and "group not found" in str(error)
+        field = "group" if missing_group else "file"
+        value = group if missing_group else str(source)
+        allowed = "a group of the file" if missing_group else f"{READABLE} ({error})"
+        raise DataError([Violation(field, value, allowed)], str(source)) from error
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """A temporary name beside `path` that takes its place when the block ends well.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> target = Path(tempfile.mkdtemp()) / "table.csv"
+    >>> with replacing(target) as temporary:
+    ...     _ = temporary.write_text("gap,stiffness")
+    ...     target.exists()
+    False
+    >>> target.read_text()
+    'gap,stiffness'
+    """
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        yield temporary
+        os.replace(temporary, target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def _write_group(dataset: xr.Dataset, path: Path, group: str | None) -> None:
+    dataset.to_netcdf(
+        path,
+        mode="a" if group else "w",
+        format="NETCDF4",
+        engine="netcdf4",
+        group=group,
+        encoding={str(name): _encoding(dataset, str(name)) for name in dataset.variables},
+    )
+
+
+def _encoding(dataset: xr.Dataset, name: str) -> dict[str, Any]:
+    """Compression and checksums; NaN marks a missing value, but never in a coordinate."""
+    variable = dataset.variables[name]
+    encoding: dict[str, Any] = {}
+    if variable.dtype.kind not in "iuf":
+        return encoding
+    if variable.dtype.kind != "f" or name in dataset.coords:
+        encoding["_FillValue"] = None
+    if variable.ndim:
+        encoding |= {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+    return encoding
