@@ -30,13 +30,13 @@ test-all: lint ## lint, types and every test
 lint: setup ## ruff, snakefmt and mypy, nothing is changed
 	$(RUN) ruff check .
 	$(RUN) ruff format --check .
-	$(BIN)/snakefmt --check Snakefile workflow
+	$(RUN) snakefmt --check Snakefile workflow
 	$(RUN) mypy
 
 format: setup ## format the sources
 	$(RUN) ruff check --fix .
 	$(RUN) ruff format .
-	$(BIN)/snakefmt Snakefile workflow
+	$(RUN) snakefmt Snakefile workflow
 
 schema: setup ## write params/scene.schema.json, the scene format for editors
 	$(BIN)/python scripts/write_schema.py

@@ -48,7 +48,7 @@ touch $unfinished
 rm -f "$stamp"
 pip="$venv/bin/python -m pip --disable-pip-version-check --no-input"
 echo "Installing the locked dependencies into $venv (about a minute the first time)"
-$pip install --quiet --require-hashes -r requirements.lock
-$pip install --quiet --no-deps --no-build-isolation -e .
+$pip install --quiet --quiet --require-hashes -r requirements.lock
+$pip install --quiet --quiet --no-deps --no-build-isolation -e .
 rm -f $unfinished
 pwd -P >"$stamp"
