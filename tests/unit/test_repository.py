@@ -7,8 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from bondcell.fem.gmsh_session import SYSTEM_PACKAGES
-
 ROOT = Path(__file__).parents[2]
 LARGEST = 1_000_000
 """Bytes a tracked file may have."""
@@ -97,6 +95,8 @@ def test_scripts_are_executable():
 
 
 def test_script_and_message_name_the_same_system_packages():
+    from bondcell.fem.gmsh_session import SYSTEM_PACKAGES
+
     done = subprocess.run(
         ["sh", ROOT / "scripts" / "system_deps.sh", "--list"],
         capture_output=True,
