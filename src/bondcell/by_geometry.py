@@ -53,8 +53,8 @@ def solve_points(
 ) -> PointResults:
     """Finite element stiffness at every point of a raveled cell, geometry by geometry.
 
-    A geometry that raises costs its own points only: they become NaN with the flag ``solver_failed``
-    (or ``mesh_failed``), a warning names it, the rest goes on.
+    A geometry that raises costs its own points only: they become NaN with the flag
+    ``solver_failed`` (or ``mesh_failed``), a warning names it, the rest goes on.
 
     Parameters
     ----------

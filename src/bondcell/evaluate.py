@@ -1,4 +1,4 @@
-"""The stiffness of every bond cell in a study by one model: labelled arrays in, labelled arrays out."""
+"""The stiffness of every bond cell in a study by one model: labelled arrays in and out."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def evaluate(
         On the broadcast dimensions: ``stiffness`` [N m-1 for the normal load], ``error_estimate``
         (relative numerical error of that value, not of the model), ``status`` (codes of
         `bondcell.Status`), ``dof``, ``seconds`` (wall time per point), and the model's own springs
-        (``k_i``, ``k_int``, ``k_j``) if it has any. A failed point is a NaN, its reason in ``status``.
+        (``k_i``, ``k_int``, ``k_j``) if it has any. A failed point is NaN, ``status`` says why.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def evaluate(
     chosen = _checked_model(model, load, options)
     cell, dims = cell_from_study(study)
     if chosen.is_reference:
-        results, parts = solve_points(cell.ravel(), load=load, **options), {}
+        results, parts = solve_points(cell.ravel(), load=load, **options), Parts()
     else:
         results, parts = _evaluate_analytic(chosen, load, cell, options)
     attributes = output_attributes(load)
@@ -114,7 +114,7 @@ def blocks(shape: tuple[int, ...], limit: int) -> Iterator[Block]:
             yield (slice(start, stop), *others)
 
 
-def _checked_model(name: str, load: str, options: Mapping[str, Any]) -> Model:
+def _checked_model(name: object, load: object, options: Mapping[str, Any]) -> Model:
     if not isinstance(name, str) or name not in MODELS:
         raise UnknownModel([Violation("model", name, f"one of {', '.join(MODELS)}")])
     model = MODELS[name]

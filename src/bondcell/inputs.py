@@ -1,4 +1,4 @@
-"""The way from a study, labelled by name, to a cell, plain arrays: the edge between the two floors."""
+"""From a study, labelled by name, to a cell, plain arrays: the edge between the two floors."""
 
 from __future__ import annotations
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 PACKAGE = Path(__file__).parent
 
 
 def source_files(*modules: str) -> list[Path]:
-    """Source files of the package that the modules import when they are loaded, their own included.
+    """Source files of the package that are loaded with the modules, their own included.
 
-    Read from the import statements at module level, so nothing is imported to find out. What a function
-    imports when it is called is not followed: name that module too if the work calls it. The file of a
-    parent package counts only where it is itself imported from.
+    Read from the import statements at module level, so nothing is imported to find out. What a
+    function imports when it is called is not followed: name that module too if the work calls it.
+    The file of a parent package counts only where it is itself imported from.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def _path(module: str) -> Path:
     return place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
 
 
-@lru_cache(maxsize=None)
+@cache
 def _imported(path: Path) -> tuple[Path, ...]:
     tree = ast.parse(path.read_bytes(), filename=str(path))
     return tuple(_path(name) for name in _imported_modules(tree) if _path(name).is_file())
@@ -63,10 +63,12 @@ def _imported_modules(tree: ast.Module) -> Iterator[str]:
     for statement in tree.body:
         if isinstance(statement, ast.Import):
             yield from (a.name for a in statement.names if a.name.split(".")[0] == root)
-        elif isinstance(statement, ast.ImportFrom) and statement.module:
-            if statement.module.split(".")[0] == root:
-                submodules = [f"{statement.module}.{alias.name}" for alias in statement.names]
-                inside = [name for name in submodules if _path(name).is_file()]
-                yield from inside
-                if len(inside) < len(submodules):
-                    yield statement.module
+        elif isinstance(statement, ast.ImportFrom):
+            parent = statement.module or ""
+            if parent.split(".")[0] != root:
+                continue
+            names = [f"{parent}.{alias.name}" for alias in statement.names]
+            submodules = [name for name in names if _path(name).is_file()]
+            yield from submodules
+            if len(submodules) < len(names):
+                yield parent

@@ -1,0 +1,86 @@
+"""How many jobs a scene is cut into: an explicit cost model, jobs of a useful size."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import ceil, prod
+from typing import TYPE_CHECKING
+
+from bondcell.batches import ANALYTIC, REFERENCE, Batch
+from bondcell.cell import GEOMETRY
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+JOB_SECONDS = 40.0
+"""Work a job should have at most: far more than the second or two that its start costs."""
+
+SECONDS_PER_ANALYTIC_POINT = 2e-5
+"""Cost of one analytic model at one point, the slowest of them on a slow core [s]."""
+
+SECONDS_PER_GEOMETRY = 0.6
+"""Cost of meshing and assembling the finite element ladder of one geometry [s]."""
+
+SECONDS_PER_STATE = 0.1
+"""Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
+
+GEOMETRY_AXES = (*GEOMETRY, "gap_ratio", "radius_ratio")
+"""Axes that change the mesh; along all others only the moduli change."""
+
+
+def plan(scene: Scene) -> list[Batch]:
+    """The batches of a scene's sweep, from the lengths of its axes alone.
+
+    Parameters
+    ----------
+    scene
+        Without a reference no finite element batch is planned, without models no analytic one.
+    """
+    sizes = {name: len(values) for name, values in scene.axes.items()}
+    batches = analytic_batches(scene.points, len(scene.models))
+    if scene.reference is not None:
+        batches += reference_batches(sizes, scene.reference.bc)
+    return batches
+
+
+def analytic_batches(points: int, models: int) -> list[Batch]:
+    """Batches of the analytic models: usually one.
+
+    Examples
+    --------
+    >>> [batch.name for batch in analytic_batches(points=500, models=6)]
+    ['analytic_1of1']
+    """
+    seconds = points * models * SECONDS_PER_ANALYTIC_POINT
+    return _split(ANALYTIC, points, seconds) if models else []
+
+
+def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> list[Batch]:
+    """Batches of the finite element reference; a geometry is never split.
+
+    Parameters
+    ----------
+    sizes
+        Axis -> number of its values.
+    conditions
+        Boundary conditions, each solved for itself.
+
+    Examples
+    --------
+    >>> batches = reference_batches({"gap_ratio": 13, "poisson_m": 39}, ("roller",))
+    >>> [batch.name for batch in batches]
+    ['fe_roller_1of2', 'fe_roller_2of2']
+    """
+    geometries = prod(size for name, size in sizes.items() if name in GEOMETRY_AXES)
+    states = prod(size for name, size in sizes.items() if name not in GEOMETRY_AXES)
+    seconds = geometries * (SECONDS_PER_GEOMETRY + states * SECONDS_PER_STATE)
+    return [
+        batch
+        for condition in conditions
+        for batch in _split(f"{REFERENCE}_{condition}", geometries, seconds)
+    ]
+
+
+def _split(method: str, items: int, seconds: float) -> list[Batch]:
+    parts = max(1, min(items, ceil(seconds / JOB_SECONDS)))
+    return [Batch(method, part, parts) for part in range(1, parts + 1)]

@@ -1,0 +1,106 @@
+"""Where a result comes from: parameters, versions, source revision, machine, as attributes."""
+
+from __future__ import annotations
+
+import json
+import os
+import platform
+import subprocess
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+PACKAGES = ("bondcell", "numpy", "scipy", "xarray", "netCDF4", "scikit-fem", "gmsh")
+"""Distributions whose versions matter to a result."""
+
+UNKNOWN = "unknown"
+
+
+def collect(scene: Scene) -> dict[str, str]:
+    """Global attributes of a result file.
+
+    No time of day is among them: same parameters, versions and machine, same attributes.
+
+    Parameters
+    ----------
+    scene
+        The scene that was computed.
+    """
+    return {
+        "title": scene.title,
+        "scene": scene.name,
+        "parameters": scene.given_json,
+        **software(),
+        **machine(),
+    }
+
+
+def software() -> dict[str, str]:
+    """Versions of what computed, and the revision of the sources."""
+    return {
+        "source": f"bondcell {_version('bondcell')}",
+        "source_revision": source_revision(),
+        "versions": json.dumps(
+            {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
+        ),
+    }
+
+
+def machine() -> dict[str, str]:
+    """The computer, as timings need it: processor, cores that may be used, platform."""
+    return {
+        "machine": processor(),
+        "cores": str(usable_cores()),
+        "platform": platform.platform(),
+    }
+
+
+def usable_cores() -> int:
+    """Cores this process may run on."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+@cache
+def processor() -> str:
+    """Model name of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or platform.machine() or UNKNOWN
+
+
+@cache
+def source_revision() -> str:
+    """Git revision of the sources, with ``-dirty`` after an edit; ``unknown`` outside git.
+
+    A package that merely lies inside somebody else's repository (in a virtual environment, say) is
+    not part of its revision.
+    """
+    here = Path(__file__)
+    if not _git(here.parent, "ls-files", "--error-unmatch", here.name):
+        return UNKNOWN
+    return _git(here.parent, "describe", "--always", "--dirty", "--exclude=*") or UNKNOWN
+
+
+def _git(folder: Path, *arguments: str) -> str:
+    command = ["git", "-C", str(folder), *arguments]
+    try:
+        answer = subprocess.run(command, capture_output=True, text=True, check=True, timeout=20)
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return answer.stdout.strip()
+
+
+def _version(distribution: str) -> str:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return UNKNOWN

@@ -1,0 +1,44 @@
+"""The finite element reference of a scene at the points of one batch."""
+
+from __future__ import annotations
+
+import xarray as xr
+
+from bondcell.batches import REFERENCE, Batch, batch_dataset, cell_at
+from bondcell.by_geometry import Progress, solve_points
+from bondcell.errors import InputError, Violation
+from bondcell.inputs import cell_from_study
+
+
+def compute_reference(
+    study: xr.Dataset,
+    batch: Batch,
+    tolerance: float,
+    load: str = "normal",
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Finite element stiffness at the batch's points, geometry by geometry.
+
+    Parameters
+    ----------
+    study
+        Inputs of the whole scene.
+    batch
+        Which of its geometries; its method ends in the boundary condition.
+    tolerance
+        Relative error at which refinement stops.
+    load
+        Load name.
+    progress
+        Called as ``progress(points_done, points)`` after each geometry.
+    """
+    method, _, condition = batch.method.partition("_")
+    if method != REFERENCE or not condition:
+        allowed = f"{REFERENCE}_<boundary condition>_<part>of<parts>"
+        raise InputError([Violation("batch", batch.name, allowed)])
+    cell, _ = cell_from_study(study)
+    positions = batch.points(cell)
+    results = solve_points(
+        cell_at(cell, positions), load=load, progress=progress, bc=condition, tolerance=tolerance
+    )
+    return batch_dataset(positions, {batch.method: results}, load)
