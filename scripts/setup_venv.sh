@@ -8,6 +8,13 @@ stamp=$1
 venv=.venv
 unfinished=$venv/unfinished # there while an installation runs: an interrupted one is not built upon
 
+# Snakemake runs scripts by the interpreter's path, unquoted.
+case $(pwd -P) in *[[:space:]]*)
+    echo "error: Snakemake cannot run from a path with spaces: $(pwd -P); move or rename the folder" >&2
+    exit 1
+    ;;
+esac
+
 # Prints the base interpreter of $1 if that is Python >= 3.11 and able to make environments.
 base_interpreter() {
     "$1" -c '
