@@ -38,8 +38,8 @@ format: setup ## format the sources
 	$(RUN) ruff format .
 	$(RUN) snakefmt Snakefile workflow
 
-schema: setup ## write params/scene.schema.json, the scene format for editors
-	$(BIN)/python scripts/write_schema.py
+schema: setup ## write params/*.schema.json, the scene format for editors
+	$(RUN) bondcell.scene_schema
 
 bench: setup ## run the benchmarks; they are no tests
 	@sh scripts/system_deps.sh --optional
