@@ -1,0 +1,336 @@
+"""A scene: what one parameter file asks for, checked, immutable, in SI units."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
+
+from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationError
+
+from bondcell import scene_checks, scene_digests
+from bondcell.cell import Cell, FloatArray
+from bondcell.errors import SceneError, Violation
+from bondcell.quantities import NotAllowed, UnitsWarning
+from bondcell.scene_blocks import Case, CellInputs, Convergence, Reference
+from bondcell.scene_fields import (
+    NAME,
+    NAME_RULE,
+    Block,
+    Flag,
+    SceneSchema,
+    distinct,
+    one_of,
+    text_up_to,
+)
+from bondcell.scene_sweep import Range, Sweep
+from bondcell.scene_violations import KeyPath, as_given, found_violations, null_violations, without
+from bondcell.yaml_loading import load_mapping
+
+RESERVED = ("study",)
+"""Names a scene cannot have: params/study.yaml is the list of scenes."""
+
+
+def analytic_models() -> tuple[str, ...]:
+    """Names of the models a scene may list; the reference has a block of its own."""
+    from bondcell.models import MODELS
+
+    return tuple(name for name, model in MODELS.items() if not model.is_reference)
+
+
+def known_loads() -> tuple[str, ...]:
+    """Names of the loads that any model covers."""
+    from bondcell.models import MODELS
+
+    return tuple(dict.fromkeys(load for model in MODELS.values() for load in model.loads))
+
+
+def _model(name: Any) -> str:
+    known = analytic_models()
+    if not isinstance(name, str) or name not in known:
+        hint = "; the reference is asked for by the key `reference`" if name == "fe" else ""
+        raise NotAllowed(f"one of {', '.join(known)}{hint}")
+    return name
+
+
+def _show_models(schema: dict[str, Any]) -> None:
+    schema["enum"] = list(analytic_models())
+
+
+def _show_loads(schema: dict[str, Any]) -> None:
+    schema["enum"] = list(known_loads())
+
+
+ModelName = Annotated[str, BeforeValidator(_model), Field(json_schema_extra=_show_models)]
+
+
+class ConvergenceCase(NamedTuple):
+    """A complete cell of the convergence study and its boundary condition."""
+
+    cell: Cell
+    bc: str
+
+
+class Scene(Block):
+    """What one parameter file asks for. What it does not name is neither computed nor imported.
+
+    Build one with `load_scene` or `parse_scene`, which also check what concerns several keys.
+    """
+
+    title: Annotated[str, text_up_to(200)] = Field(
+        description="Heading of the scene's section in the report.",
+        json_schema_extra={"minLength": 1, "maxLength": 200},
+    )
+    question: Annotated[str, text_up_to(4000)] | None = Field(
+        None,
+        description="What the scene is to answer, and what a reader should know.",
+        json_schema_extra={"minLength": 1, "maxLength": 4000},
+    )
+    cell: CellInputs = Field(default_factory=CellInputs, description="The bond cell.")
+    sweep: Sweep | None = Field(None, description="Swept axes; left out: the one cell.")
+    models: Annotated[tuple[ModelName, ...], AfterValidator(distinct)] = Field(
+        (),
+        description="Analytic models to evaluate at every point.",
+        json_schema_extra={"minItems": 1, "uniqueItems": True},
+    )
+    reference: Reference | None = Field(
+        None, description="Finite element reference; left out: nothing is meshed."
+    )
+    load: Annotated[str, one_of(known_loads)] = Field(
+        "normal", description="Load on the cell.", json_schema_extra=_show_loads
+    )
+    contributions: Flag = Field(
+        False, description="Whether to store the springs k_i, k_int, k_j of the model fsi."
+    )
+    convergence: Convergence | None = Field(None, description="Convergence study; left out: none.")
+
+    _name: str = PrivateAttr("scene")
+    _given: str = PrivateAttr("{}")
+
+    @property
+    def name(self) -> str:
+        """Name of the scene: the file's name without folder and ending."""
+        return self._name
+
+    @property
+    def given_json(self) -> str:
+        """The parameters as they were given, as JSON text."""
+        return self._given
+
+    @property
+    def axis_names(self) -> tuple[str, ...]:
+        """Names of the swept axes in the order of the file."""
+        return self.sweep.names if self.sweep else ()
+
+    @property
+    def axes(self) -> dict[str, FloatArray]:
+        """Swept axes in the order of the file: name -> SI values, shape (length of the axis,)."""
+        return self.sweep.axes() if self.sweep else {}
+
+    @property
+    def points(self) -> int:
+        """Number of points of the sweep; 1 without a sweep."""
+        return self.sweep.points() if self.sweep else 1
+
+    @property
+    def has_points(self) -> bool:
+        """Whether anything is evaluated at the points of the sweep (or at the one cell)."""
+        return bool(self.models) or self.reference is not None
+
+    @property
+    def uses_finite_elements(self) -> bool:
+        """Whether anything is meshed."""
+        return self.reference is not None or self.convergence is not None
+
+    @property
+    def uses_triangles(self) -> bool:
+        """Whether the unstructured mesher is needed."""
+        return self.convergence is not None and bool(self.convergence.sizes)
+
+    @property
+    def fe_names(self) -> dict[str, str]:
+        """Names of the reference's results -> boundary condition; the first one is ``fe``."""
+        if self.reference is None:
+            return {}
+        first, *others = self.reference.bc
+        return {"fe": first, **{f"fe_{bc}": bc for bc in others}}
+
+    def cases(self) -> dict[str, ConvergenceCase]:
+        """Cells of the convergence study by case name."""
+        if self.convergence is None:
+            return {}
+        given = self.cell.given()
+        return {
+            name: ConvergenceCase(
+                Cell.from_values(**{**given, **case.given()}), case.bc or self.convergence.bc
+            )
+            for name, case in self.convergence.cases.items()
+        }
+
+    @property
+    def digest(self) -> str:
+        """Identity of everything the scene says."""
+        return scene_digests.everything(self)
+
+    @property
+    def points_digest(self) -> str:
+        """Identity of the points: resolved inputs and axes."""
+        return scene_digests.points(self)
+
+    @property
+    def models_digest(self) -> str:
+        """Identity of what the analytic results depend on."""
+        return scene_digests.models(self)
+
+    @property
+    def reference_digest(self) -> str:
+        """Identity of what the reference's results depend on."""
+        return scene_digests.reference(self)
+
+    @property
+    def sweep_digest(self) -> str:
+        """Identity of what all results at the points depend on; titles are not part of it."""
+        return scene_digests.sweep(self)
+
+    @property
+    def convergence_digest(self) -> str:
+        """Identity of what the convergence study depends on."""
+        return scene_digests.convergence(self)
+
+
+def load_scene(path: str | Path) -> Scene:
+    """Read and check a scene file.
+
+    Parameters
+    ----------
+    path
+        A YAML file; its name without the ending is the scene's name.
+
+    Returns
+    -------
+    Scene
+        Immutable, SI units.
+
+    Raises
+    ------
+    SceneError
+        Lists every violation with its dotted key, value and allowed range.
+
+    Warns
+    -----
+    UnitsWarning
+        A value is so large or small that its unit was probably forgotten.
+    """
+    source = str(path)
+    scene = parse_scene(load_mapping(path, SceneError), name=Path(path).stem, source=source)
+    for warning in scene_checks.unit_warnings(scene):
+        warnings.warn(f"{source}: {warning}", UnitsWarning, stacklevel=2)
+    return scene
+
+
+def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None = None) -> Scene:
+    """Check the content of a scene file.
+
+    Parameters
+    ----------
+    data
+        Nested mappings and lists of plain values.
+    name
+        The scene's name.
+    source
+        Where the content came from, for messages.
+
+    Raises
+    ------
+    SceneError
+        Lists every violation with its dotted key, value and allowed range.
+
+    Examples
+    --------
+    >>> scene = parse_scene(
+    ...     {
+    ...         "title": "One cell",
+    ...         "models": ["fsi"],
+    ...         "cell": {
+    ...             "radius_i": "7.5 mm",
+    ...             "gap": "0.5 mm",
+    ...             "young_i": "30 GPa",
+    ...             "poisson_i": 0.25,
+    ...             "young_m": "1.4 MPa",
+    ...             "poisson_m": 0.46,
+    ...         },
+    ...     }
+    ... )
+    >>> scene.cell.gap, scene.points
+    (0.0005, 1)
+    """
+    violations = _name_violations(name)
+    nulls = dict(null_violations(data))
+    bad = {_prunable(path) for path in nulls}
+    violations += nulls.values()
+    scene: Scene | None
+    try:
+        scene = Scene.model_validate(without(data, nulls))
+    except ValidationError as error:
+        found = list(found_violations(error, known_keys))
+        violations += [violation for _, violation in found]
+        bad |= {_prunable(path) for path, _ in found}
+        scene = _salvage(data, set(bad))
+    if scene is not None:
+        joint = scene_checks.joint_violations(scene, bad)
+        violations += [as_given(violation, data) for violation in joint]
+    unique = {violation.field: violation for violation in reversed(violations)}
+    if unique:
+        raise SceneError(reversed(unique.values()), source=source)
+    assert scene is not None
+    scene._name = name
+    scene._given = json.dumps(data, ensure_ascii=False, default=str)
+    return scene
+
+
+def known_keys(path: KeyPath) -> tuple[str, ...]:
+    """Keys that the block at a path may have."""
+    blocks: dict[str, type[Block]] = {
+        "cell": CellInputs,
+        "reference": Reference,
+        "convergence": Convergence,
+        "sweep": Sweep,
+    }
+    block: type[Block] = Scene
+    if path:
+        block = blocks[str(path[0])]
+    if len(path) > 1:
+        block = Range if path[0] == "sweep" else Case
+    return tuple(block.model_fields)
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """JSON schema of a scene file, for editors."""
+    schema = Scene.model_json_schema(schema_generator=SceneSchema)
+    return {"$schema": SceneSchema.schema_dialect, **schema}
+
+
+def _name_violations(name: str) -> list[Violation]:
+    if NAME.fullmatch(name) and name not in RESERVED:
+        return []
+    return [Violation("name", name, f"{NAME_RULE}, other than {', '.join(RESERVED)}")]
+
+
+def _prunable(path: KeyPath) -> KeyPath:
+    """The part of a scene that can be left out when something in it is wrong."""
+    if path[:2] == ("convergence", "cases"):
+        return path[:3]
+    return path[:2] if path[:1] in (("cell",), ("sweep",), ("convergence",)) else path[:1]
+
+
+def _salvage(data: Mapping[str, Any], bad: set[KeyPath]) -> Scene | None:
+    """The scene without its wrong parts, so that what concerns several keys is checked as well."""
+    for _ in range(4):
+        try:
+            return Scene.model_validate({"title": "untitled", **without(data, bad)})
+        except ValidationError as error:
+            # Leaving a part out can empty the block around it: leave that out too.
+            bad |= {_prunable(path) for path, _ in found_violations(error, known_keys)}
+    return None

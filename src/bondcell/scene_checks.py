@@ -1,0 +1,176 @@
+"""What must hold between the keys of a scene: completeness, contradictions, ranges, size."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell, FloatArray
+from bondcell.errors import InputError, Violation
+from bondcell.scene_sweep import DERIVED, MOST_POINTS, resolve_inputs
+from bondcell.scene_violations import KeyPath
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+LARGEST_LIKELY_LENGTH = 1.0
+"""Beyond this a length in metres was probably meant in millimetres [m]."""
+
+SMALLEST_LIKELY_MODULUS = 100.0
+"""Below this a modulus in pascals was probably meant in megapascals [Pa]."""
+
+_NEUTRAL = {name: 0.0 if UNITS[name] == "1" else 1.0 for name in UNITS}
+"""Stands in for what is missing or wrong, so that the rest can be checked."""
+
+_BASE = {"young_m": "young_i", "gap": "radius_i", "radius_j": "radius_i"}
+"""Input set by a ratio -> the input the ratio refers to."""
+
+
+def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
+    """Everything that is wrong between keys, or with values once they are put together.
+
+    Parameters
+    ----------
+    scene
+        A scene whose wrong parts, if any, were left out.
+    bad
+        Paths of these parts: nothing is said about what follows from their absence.
+    """
+    yield from _request_violations(scene, bad)
+    yield from _contradictory_axes(scene)
+    wrong = {str(path[1]) for path in bad if path[0] in ("cell", "sweep") and len(path) > 1}
+    wrong |= {DERIVED[name] for name in wrong if name in DERIVED}
+    incomplete = ("cell",) in bad or ("sweep",) in bad
+    given = {name: value for name, value in scene.cell.given().items() if name not in wrong}
+    yield from _range_violations(given, "cell.")
+    asked = scene.has_points or scene.sweep or {("models",), ("reference",)} & set(bad)
+    if asked and not incomplete:
+        axes = scene.axis_names
+        supplied = {*given, *axes, *(DERIVED[name] for name in axes if name in DERIVED), *wrong}
+        for name in REQUIRED:
+            if name not in supplied:
+                yield _required(f"cell.{name}", name, "or swept")
+    if scene.points > MOST_POINTS:
+        yield Violation("sweep", f"{scene.points} points", f"at most {MOST_POINTS} points")
+    else:
+        yield from _axis_violations(given, scene.axes)
+    yield from _case_violations(scene, given, wrong, incomplete)
+
+
+def unit_warnings(scene: Scene) -> list[str]:
+    """Values that are allowed, but whose unit was probably forgotten."""
+    places: dict[str, Any] = {f"cell.{k}": v for k, v in scene.cell.given().items()}
+    places |= {f"sweep.{name}": values for name, values in scene.axes.items()}
+    if scene.convergence:
+        for name, case in scene.convergence.cases.items():
+            places |= {f"convergence.cases.{name}.{k}": v for k, v in case.given().items()}
+    found = []
+    for place, values in places.items():
+        unit = UNITS.get(place.rpartition(".")[2])
+        if unit == "m" and np.max(values) > LARGEST_LIKELY_LENGTH:
+            value, hint = np.max(values), "beyond 1 m; were millimetres meant (7.5 mm)?"
+        elif unit == "Pa" and np.min(values) < SMALLEST_LIKELY_MODULUS:
+            value, hint = np.min(values), "below 100 Pa; were megapascals meant (1.4 MPa)?"
+        else:
+            continue
+        found.append(f"{place} = {value:g} {unit}: {hint}")
+    return found
+
+
+def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
+    from bondcell.models import MODELS
+
+    something = {("models",), ("reference",)} & set(bad)
+    if scene.sweep and not (scene.has_points or something):
+        yield Violation("models", None, "at least one model, or a reference, for the sweep")
+    elif not (scene.has_points or scene.convergence or something or ("convergence",) in bad):
+        yield Violation("models", None, "something to compute: models, reference or convergence")
+    if scene.contributions and "fsi" not in scene.models and ("models",) not in bad:
+        yield Violation("contributions", True, "true only with fsi among the models")
+    for i, name in enumerate(scene.models):
+        if scene.load not in MODELS[name].loads:
+            able = [other for other in MODELS if scene.load in MODELS[other].loads]
+            allowed = f"a model that covers the load {scene.load}: {', '.join(able)}"
+            yield Violation(f"models.{i}", name, allowed)
+    if scene.uses_finite_elements and scene.load not in MODELS["fe"].loads:
+        allowed = f"a load of the reference: {', '.join(MODELS['fe'].loads)}"
+        yield Violation("load", scene.load, allowed)
+
+
+def _contradictory_axes(scene: Scene) -> Iterator[Violation]:
+    axes = scene.axis_names
+    for ratio, name in DERIVED.items():
+        if ratio in axes and name in axes:
+            allowed = f"one of the axes {name} and {ratio}, not both: both set {name}"
+            yield Violation(f"sweep.{ratio}", f"beside sweep.{name}", allowed)
+
+
+def _required(field: str, name: str, where: str) -> Violation:
+    unit = "" if UNITS[name] == "1" else f" [{UNITS[name]}]"
+    return Violation(field, None, f"the {LONG_NAMES[name]}{unit}: required here {where}")
+
+
+def _axis_violations(
+    given: Mapping[str, float], axes: Mapping[str, FloatArray]
+) -> Iterator[Violation]:
+    usable = {name: axes[name] for name in axes if DERIVED.get(name) not in axes}
+    shaped = {
+        name: values.reshape([-1 if k == i else 1 for k in range(len(usable))])
+        for i, (name, values) in enumerate(usable.items())
+    }
+    inputs = resolve_inputs({**_NEUTRAL, **given}, shaped)
+    ratios = {DERIVED[name]: name for name in usable if name in DERIVED}
+    known = {*given, *usable, *ratios}
+    found = list(_range_violations({k: v for k, v in inputs.items() if k in known}, ""))
+    wrong = {violation.field for violation in found}
+    for violation in found:
+        name = violation.field
+        if name in usable:
+            yield Violation(f"sweep.{name}", violation.value, violation.allowed)
+        elif name not in ratios:
+            yield Violation(f"cell.{name}", violation.value, violation.allowed)
+        elif _BASE[name] not in wrong:
+            yield _ratio_violation(ratios[name], violation, inputs[name], shaped)
+
+
+def _ratio_violation(
+    ratio: str, violation: Violation, derived: FloatArray, shaped: Mapping[str, FloatArray]
+) -> Violation:
+    """Blame the value of the ratio for the derived input that is out of range."""
+    at = np.flatnonzero(derived.ravel() == violation.value)[0]
+    value = np.broadcast_to(shaped[ratio], derived.shape).ravel()[at]
+    allowed = f"one that puts {violation.field} in {violation.allowed}"
+    gives = f"it gives {violation.field} = {violation.value:g}"
+    return Violation(f"sweep.{ratio}", float(value), f"{allowed}; {gives}")
+
+
+def _case_violations(
+    scene: Scene, given: Mapping[str, float], wrong: Collection[str], incomplete: bool
+) -> Iterator[Violation]:
+    if scene.convergence is None:
+        return
+    for case, overrides in scene.convergence.cases.items():
+        place = f"convergence.cases.{case}"
+        values = {**given, **overrides.given()}
+        for name in REQUIRED:
+            if not (name in values or name in wrong or incomplete):
+                yield _required(f"cell.{name}", name, f"or in {place}")
+        for violation in _range_violations(values, ""):
+            block = place if violation.field in overrides.given() else "cell"
+            yield Violation(f"{block}.{violation.field}", violation.value, violation.allowed)
+
+
+def _range_violations(values: Mapping[str, Any], prefix: str) -> Iterator[Violation]:
+    """Violations that `Cell` finds, without those of values nobody gave."""
+    filled = {**{name: _NEUTRAL[name] for name in REQUIRED}, **values}
+    if "radius_i" not in values:
+        filled.pop("cylinder_radius", None)
+    try:
+        Cell.from_values(**filled)
+    except InputError as error:
+        for violation in error.violations:
+            if violation.field in values:
+                field = prefix + violation.field
+                yield Violation(field, violation.value, violation.allowed)

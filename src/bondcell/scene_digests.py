@@ -1,0 +1,82 @@
+"""Identities of a scene and of its parts: what changed, and so what has to be computed again."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bondcell.cell import Cell, FloatArray
+from bondcell.scene_sweep import resolve_inputs
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+
+def everything(scene: Scene) -> str:
+    """Digest of the parsed content: ``0.5 mm`` is ``5e-4``, the order of the axes counts."""
+    content = scene.model_dump(exclude_none=True)
+    if scene.sweep:
+        content["sweep"] = [(name, content["sweep"][name]) for name in scene.axes]
+    if scene.convergence:
+        content["convergence"]["cases"] = list(content["convergence"]["cases"].items())
+    return _digest(content)
+
+
+def points(scene: Scene) -> str:
+    """Digest of axes and resolved inputs: a range and the list of its values are the same."""
+    axes = scene.axes
+    shaped = {
+        name: values.reshape([-1 if k == i else 1 for k in range(len(axes))])
+        for i, (name, values) in enumerate(axes.items())
+    }
+    return _digest(
+        {
+            "axes": [(name, _array(values)) for name, values in axes.items()],
+            "cell": _cell(Cell.from_values(**resolve_inputs(scene.cell.given(), shaped))),
+        }
+    )
+
+
+def models(scene: Scene) -> str:
+    """Digest of what the analytic results depend on."""
+    if not scene.models:
+        return _digest(None)
+    return _digest([points(scene), scene.load, scene.models, scene.contributions])
+
+
+def reference(scene: Scene) -> str:
+    """Digest of what the reference's results depend on."""
+    if scene.reference is None:
+        return _digest(None)
+    return _digest([points(scene), scene.load, scene.reference.model_dump()])
+
+
+def sweep(scene: Scene) -> str:
+    """Digest of what all results at the points depend on."""
+    return _digest([models(scene), reference(scene)])
+
+
+def convergence(scene: Scene) -> str:
+    """Digest of what the convergence study depends on."""
+    block = scene.convergence
+    if block is None:
+        return _digest(None)
+    cases = [(name, case.bc, _cell(case.cell)) for name, case in scene.cases().items()]
+    return _digest([cases, block.orders, block.sizes, block.repeats, scene.load, scene.models])
+
+
+def _cell(cell: Cell) -> dict[str, Any]:
+    return {name: _array(values) for name, values in cell.as_dict().items()}
+
+
+def _array(values: FloatArray) -> Any:
+    little_endian = np.ascontiguousarray(values + 0.0, dtype="<f8")  # + 0.0: no negative zero
+    return [values.shape, hashlib.sha256(little_endian.tobytes()).hexdigest()]
+
+
+def _digest(content: Any) -> str:
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
