@@ -1,4 +1,4 @@
-"""The bond cell: two spheres bonded through a matrix, as arrays that broadcast against each other."""
+"""The bond cell: two spheres bonded through a matrix, as arrays that broadcast together."""
 
 from __future__ import annotations
 
@@ -52,13 +52,19 @@ LONG_NAMES = {
 class Cell:
     """Inputs of one or many bond cells (theory: section "The bond cell"), SI units.
 
-    All fields are float arrays that broadcast against each other. Build one with `Cell.from_values`,
-    which fills the defaults and checks every value.
+    All fields are float arrays that broadcast against each other. Build one with
+    `Cell.from_values`, which fills the defaults and checks every value.
 
     Examples
     --------
-    >>> cell = Cell.from_values(radius_i=7.5e-3, gap=[5e-4, 1e-3], young_i=3e10, young_m=1.4e6,
-    ...                         poisson_i=0.25, poisson_m=0.46)
+    >>> cell = Cell.from_values(
+    ...     radius_i=7.5e-3,
+    ...     gap=[5e-4, 1e-3],
+    ...     young_i=3e10,
+    ...     young_m=1.4e6,
+    ...     poisson_i=0.25,
+    ...     poisson_m=0.46,
+    ... )
     >>> cell.shape
     (2,)
     >>> cell.length
@@ -83,8 +89,9 @@ class Cell:
         Parameters
         ----------
         **values
-            The names of `UNITS`; `REQUIRED` ones must be there. Defaults: particle j like particle i,
-            ``cylinder_radius = max(radius_i, radius_j)``. ``young_i = inf`` is a rigid particle.
+            The names of `UNITS`; `REQUIRED` ones must be there. Defaults: particle j like
+            particle i, ``cylinder_radius = max(radius_i, radius_j)``. ``young_i = inf`` is a
+            rigid particle.
 
         Raises
         ------
@@ -92,11 +99,14 @@ class Cell:
             Names every missing, unknown, non-numeric and out-of-range value at once.
         """
         arrays, violations = _as_arrays(values)
+        for name, value in arrays.items():
+            violations += _range_violations(name, value)
         violations += [
             Violation(name, None, "a number: the value is required")
             for name in REQUIRED
             if name not in values
         ]
+        violations += _shape_violations(arrays) or _cylinder_violations(arrays)
         if violations:
             raise InputError(violations)
         arrays.setdefault("radius_j", arrays["radius_i"])
@@ -104,9 +114,6 @@ class Cell:
         arrays.setdefault("poisson_j", arrays["poisson_i"])
         largest = np.maximum(arrays["radius_i"], arrays["radius_j"])
         arrays.setdefault("cylinder_radius", largest)
-        violations = _range_violations(arrays, largest)
-        if violations:
-            raise InputError(violations)
         return cls(**arrays)
 
     @property
@@ -155,43 +162,59 @@ def _as_arrays(values: Mapping[str, ArrayLike]) -> tuple[dict[str, FloatArray], 
         if name not in UNITS:
             violations.append(Violation(name, value, f"one of the inputs {', '.join(UNITS)}"))
             continue
-        raw = np.asarray(value)
+        try:
+            raw = np.asarray(value)
+        except ValueError:  # a ragged nest of lists
+            raw = np.empty((), dtype=object)
         if raw.dtype.kind not in "iuf":
             violations.append(Violation(name, value, f"numbers [{UNITS[name]}]"))
-            continue
-        arrays[name] = raw.astype(np.float64)
+        elif not raw.size:
+            violations.append(Violation(name, value, "at least one number"))
+        else:
+            arrays[name] = raw.astype(np.float64)
     return arrays, violations
 
 
-def _range_violations(arrays: Mapping[str, FloatArray], largest: FloatArray) -> list[Violation]:
-    violations: list[Violation] = []
+def _range_violations(name: str, value: FloatArray) -> list[Violation]:
+    """What is wrong with one input on its own."""
+    if name in GEOMETRY or name == "young_m":
+        good, allowed = np.isfinite(value) & (value > 0), f"(0, inf) {UNITS[name]}, finite"
+    elif name in ("young_i", "young_j"):
+        good, allowed = value > 0, "(0, inf] Pa, inf for a rigid particle"
+    else:
+        good, allowed = (value > -1) & (value <= 0.5), "(-1, 0.5]"
+    return _violations(name, value[~good], allowed)
 
-    def check(name: str, good: NDArray[np.bool_], allowed: str) -> None:
-        bad = np.broadcast_to(arrays[name], good.shape)[~good]
-        if bad.size:
-            more = f" ({bad.size} such values)" if bad.size > 1 else ""
-            violations.append(Violation(name, float(bad[0]), allowed + more))
 
-    for name in ("radius_i", "radius_j", "gap"):
-        check(name, _finite_positive(arrays[name]), "(0, inf) m, finite")
-    for name in ("young_i", "young_j"):
-        check(name, arrays[name] > 0, "(0, inf] Pa, inf for a rigid particle")
-    check("young_m", _finite_positive(arrays["young_m"]), "(0, inf) Pa, finite")
-    for name in ("poisson_i", "poisson_j", "poisson_m"):
-        check(name, (arrays[name] > -1) & (arrays[name] <= 0.5), "(-1, 0.5]")
-    radius = arrays["cylinder_radius"]
-    check(
-        "cylinder_radius",
-        np.isfinite(radius) & (radius >= largest),
-        f"[max(radius_i, radius_j), inf) m, here at least {float(np.max(largest)):g} m",
-    )
+def _shape_violations(arrays: Mapping[str, FloatArray]) -> list[Violation]:
     try:
         np.broadcast_shapes(*(value.shape for value in arrays.values()))
     except ValueError:
         shapes = ", ".join(f"{name} {value.shape}" for name, value in arrays.items() if value.ndim)
-        violations.append(Violation("shapes", shapes, "shapes that broadcast against each other"))
-    return violations
+        return [Violation("shapes", shapes, "shapes that broadcast against each other")]
+    return []
 
 
-def _finite_positive(value: FloatArray) -> NDArray[np.bool_]:
-    return np.isfinite(value) & (value > 0)
+def _cylinder_violations(arrays: Mapping[str, FloatArray]) -> list[Violation]:
+    """Cylinders thinner than a particle; values that are wrong by themselves are not repeated."""
+    if "cylinder_radius" not in arrays:
+        return []
+    radius = arrays["cylinder_radius"]
+    largest = np.zeros(())
+    for name in ("radius_i", "radius_j"):
+        given = arrays.get(name, np.zeros(()))
+        largest = np.maximum(largest, np.where(np.isfinite(given), given, 0.0))
+    radius, largest = np.broadcast_arrays(radius, largest)
+    bad = (radius > 0) & (radius < largest)
+    if not bad.any():
+        return []
+    allowed = f"[max(radius_i, radius_j), inf) m, here at least {float(largest[bad][0])} m"
+    return _violations("cylinder_radius", radius[bad], allowed)
+
+
+def _violations(name: str, bad: FloatArray, allowed: str) -> list[Violation]:
+    """One complaint about the first of the bad values, none if there are none."""
+    if not bad.size:
+        return []
+    more = f" ({bad.size} such values)" if bad.size > 1 else ""
+    return [Violation(name, float(bad[0]), allowed + more)]

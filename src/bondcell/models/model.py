@@ -30,6 +30,24 @@ class Springs:
     parts: Mapping[str, FloatArray] = field(default_factory=dict)
     relative_error: FloatArray | float = 0.0
 
+    @classmethod
+    def of_cell(
+        cls,
+        cell: Cell,
+        stiffness: FloatArray,
+        relative_error: FloatArray | float,
+        **parts: FloatArray,
+    ) -> Springs:
+        """Spread a model's arrays over the shape of the cell, inputs it ignores included."""
+        shape = cell.shape
+        spread = {name: np.broadcast_to(part, shape) for name, part in parts.items()}
+        return cls(np.broadcast_to(stiffness, shape), spread, relative_error)
+
+
+def in_series(*springs: FloatArray) -> FloatArray:
+    """Stiffness of springs in a row; an infinite one does not matter."""
+    return np.asarray(1.0 / sum(1.0 / spring for spring in springs))
+
 
 def everywhere(cell: Cell) -> NDArray[np.bool_]:
     """Validity of a model that holds for every cell."""

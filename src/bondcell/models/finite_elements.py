@@ -1,0 +1,28 @@
+"""The entry of the finite element reference, whose numbers `bondcell.evaluate` takes from `fem`."""
+
+from __future__ import annotations
+
+from typing import Never
+
+from bondcell.models.model import Model
+
+
+def _solved_by_geometry(*_args: object, **_options: object) -> Never:
+    raise NotImplementedError("the reference is solved by geometry: call bondcell.evaluate")
+
+
+FE = Model(
+    name="fe",
+    title="finite elements",
+    summary="Axisymmetric high-order finite elements of the cell itself, with an error estimate.",
+    source="This project; an independent discretisation by triangles checks it.",
+    valid_range="Every cell within the limits of the solver; points beyond them are flagged.",
+    loads={"normal": _solved_by_geometry},
+    options={
+        "bc": "End planes and sides: 'roller' (frictionless plates, free sides; the default), "
+        "'clamped' (plates that hold the plane), 'confined' (frictionless plates and "
+        "sides).",
+        "tolerance": "Relative error of the stiffness asked for; default 1e-6.",
+    },
+    is_reference=True,
+)

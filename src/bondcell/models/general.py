@@ -1,0 +1,110 @@
+"""The general model: a sequential core around the axis, in parallel with the bond farther out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bondcell.cell import Cell, FloatArray
+from bondcell.errors import InputError, Violation
+from bondcell.models.columns import Columns, annulus
+from bondcell.models.fsi import matrix_is_weaker
+from bondcell.models.model import Model, Springs, in_series
+
+RELATIVE_ERROR = 2e-14
+"""Bound of round-off and quadrature, see tests/verification/test_models_mpmath.py."""
+
+
+def normal(cell: Cell, core_radius_ratio: float | None = None) -> Springs:
+    """Normal stiffness of the core and the bond around it.
+
+    Parameters
+    ----------
+    cell
+        Bond cells of any shape.
+    core_radius_ratio
+        Radius of the core, r_b / min(R_i, R_j), in (0, 1]; None chooses `film_radius_ratio`.
+
+    Returns
+    -------
+    Springs
+        ``K_n`` and ``k_i``, ``k_lr``, ``k_j``, ``k_par`` [N/m].
+
+    Notes
+    -----
+    ``K_n = 1/(1/k_i + 1/k_lr + 1/k_j) + k_par`` with ``k_i = 2 pi E_i r_b^2/(R_i + sqrt(R_i^2 -
+    r_b^2))``, the constant layer ``k_lr = pi E_m r_b^2 / L_g``, and ``k_par`` the generatrix
+    integral over r > r_b. The paper draws these springs (figure 3b and d) but gives no formula;
+    this is the project's.
+
+    Examples
+    --------
+    >>> cell = Cell.from_values(
+    ...     radius_i=1.0, gap=0.02, young_i=1e3, young_m=1.0, poisson_i=0.2, poisson_m=0.2
+    ... )
+    >>> for ratio in (0.1, None, 1.0):
+    ...     print(float(normal(cell, core_radius_ratio=ratio).stiffness.round(3)))
+    11.477
+    12.052
+    149.6
+    """
+    if core_radius_ratio is None:
+        ratio = film_radius_ratio(cell)
+    else:
+        ratio = np.asarray(_checked(core_radius_ratio))
+    core = ratio * np.minimum(cell.radius_i, cell.radius_j)
+    k_i = cap(cell.young_i, cell.radius_i, core)
+    k_j = cap(cell.young_j, cell.radius_j, core)
+    k_lr = np.pi * cell.young_m * core**2 / cell.gap
+    outside = Columns.outside(cell, ratio).integral() + annulus(cell)
+    k_par = 2.0 * np.pi * cell.young_m * outside
+    stiffness = in_series(k_i, k_lr, k_j) + k_par
+    return Springs.of_cell(
+        cell, stiffness, RELATIVE_ERROR, k_i=k_i, k_lr=k_lr, k_j=k_j, k_par=k_par
+    )
+
+
+def cap(young: FloatArray, radius: FloatArray, core: FloatArray) -> FloatArray:
+    """Spring of a particle inside the core, ``2 pi E a^2/(R + sqrt(R^2 - a^2))`` [N/m]."""
+    height = np.sqrt((radius - core) * (radius + core))
+    return 2.0 * np.pi * young * core**2 / (radius + height)
+
+
+def film_radius_ratio(cell: Cell) -> FloatArray:
+    """Core radius at which the matrix between the particles is twice as thick as on the axis.
+
+    Notes
+    -----
+    Near the axis ``h_m = L_g + r^2 / (2 R*)`` with ``1/R* = 1/R_i + 1/R_j``, so
+    ``r_b^2 = 2 R* L_g``, at most min(R_i, R_j). A layer of constant thickness can stand for the
+    matrix up to about there and not beyond; and since the core shrinks with the gap, k_lr has the
+    finite limit ``2 pi E_m R*``, where a core of fixed radius would turn rigid.
+    """
+    large = np.maximum(cell.radius_i, cell.radius_j)
+    small = np.minimum(cell.radius_i, cell.radius_j)
+    return np.minimum(1.0, np.sqrt(2.0 * large / (large + small) * (cell.gap / small)))
+
+
+def _checked(ratio: float) -> float:
+    number = isinstance(ratio, int | float | np.number) and not isinstance(ratio, bool)
+    if not number or not 0.0 < ratio <= 1.0:
+        raise InputError([Violation("core_radius_ratio", ratio, "(0, 1], or None for the film's")])
+    return float(ratio)
+
+
+GENERAL = Model(
+    name="general",
+    title="general model, core and parallel bond",
+    summary="A core of both particles and a constant layer in series, in parallel with the "
+    "generatrix lines outside it.",
+    source="Kacianauskas et al., PARTICLES 2013, figure 3b and d, which gives no formula; "
+    "definition of this project.",
+    valid_range="A matrix no stiffer than the particles. Poisson's effect is ignored as in fsi. "
+    "The constant layer needs a core no wider than about sqrt(2 R* L_g), the "
+    "default.",
+    loads={"normal": normal},
+    options={
+        "core_radius_ratio": "Radius of the core over the smaller particle's radius, in (0, 1]; "
+        "default: where the matrix between the particles has doubled its thickness."
+    },
+    is_valid=matrix_is_weaker,
+)
