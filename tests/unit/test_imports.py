@@ -24,7 +24,7 @@ HEAVY = {
 }
 
 GROUND = {"cell", "errors", "status", "models", "fem"}
-TOP = {"cli", "figures", "report"}
+TOP = {"__main__", "cli", "figures", "report"}
 
 
 def modules_after(code: str) -> set[str]:
