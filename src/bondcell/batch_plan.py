@@ -18,10 +18,10 @@ JOB_SECONDS = 40.0
 SECONDS_PER_ANALYTIC_POINT = 2e-5
 """Cost of one analytic model at one point, the slowest of them on a slow core [s]."""
 
-SECONDS_PER_GEOMETRY = 0.6
+SECONDS_PER_GEOMETRY = 0.5
 """Cost of meshing and assembling the finite element ladder of one geometry [s]."""
 
-SECONDS_PER_STATE = 0.1
+SECONDS_PER_STATE = 0.015
 """Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
 
 GEOMETRY_AXES = (*GEOMETRY, "gap_ratio", "radius_ratio")
@@ -67,7 +67,7 @@ def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> 
 
     Examples
     --------
-    >>> batches = reference_batches({"gap_ratio": 13, "poisson_m": 39}, ("roller",))
+    >>> batches = reference_batches({"gap_ratio": 40, "poisson_m": 50}, ("roller",))
     >>> [batch.name for batch in batches]
     ['fe_roller_1of2', 'fe_roller_2of2']
     """

@@ -3,19 +3,23 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import GEOMETRY, Cell
-from bondcell.errors import InputError, MissingLibrary
+from bondcell.errors import InputError, MissingLibrary, Violation
 from bondcell.outputs import PointResults
 from bondcell.status import Status
 
+if TYPE_CHECKING:
+    from bondcell.fem.reference import Reference
+
 IntArray = NDArray[np.int64]
 Progress = Callable[[int, int], None]
+Solver = Callable[..., "Reference"]
 
 
 def geometry_groups(cell: Cell) -> Iterator[IntArray]:
@@ -49,7 +53,11 @@ def geometry_groups(cell: Cell) -> Iterator[IntArray]:
 
 
 def solve_points(
-    cell: Cell, load: str = "normal", progress: Progress | None = None, **options: Any
+    cell: Cell,
+    solve: Solver,
+    load: str = "normal",
+    progress: Progress | None = None,
+    **options: Any,
 ) -> PointResults:
     """Finite element stiffness at every point of a raveled cell, geometry by geometry.
 
@@ -60,22 +68,23 @@ def solve_points(
     ----------
     cell
         A raveled cell.
+    solve
+        Solves points of one geometry: `bondcell.fem.reference.solve`.
     load
         Load name.
     progress
         Called as ``progress(points_done, points)`` after each geometry.
     **options
-        ``bc`` and ``tolerance`` of `bondcell.fem.reference.solve`.
+        ``bc`` and ``tolerance`` of the solver.
     """
-    from bondcell.fem import reference
-
+    _check_tolerance(options)
     points = cell.radius_i.size
     results = PointResults.empty(points)
     done = 0
     for group in geometry_groups(cell):
         try:
-            answer = reference.solve(cell.take(group), load=load, **options)
-        except (InputError, MissingLibrary, ImportError):
+            answer = solve(cell.take(group), load=load, **options)
+        except (InputError, MissingLibrary):
             raise
         except Exception as error:  # one geometry must not lose the sweep
             _record_failure(results, cell, group, error)
@@ -89,6 +98,12 @@ def solve_points(
         if progress:
             progress(done, points)
     return results
+
+
+def _check_tolerance(options: Mapping[str, Any]) -> None:
+    tolerance = options.get("tolerance", 1e-6)
+    if not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
+        raise InputError([Violation("tolerance", tolerance, "a number in (0, 1)")])
 
 
 def _record_failure(results: PointResults, cell: Cell, group: IntArray, error: Exception) -> None:

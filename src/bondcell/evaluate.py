@@ -80,7 +80,7 @@ def evaluate(
     chosen = _checked_model(model, load, options)
     cell, dims = cell_from_study(study)
     if chosen.is_reference:
-        results, parts = solve_points(cell.ravel(), load=load, **options), Parts()
+        results, parts = _evaluate_reference(load, cell, options), Parts()
     else:
         results, parts = _evaluate_analytic(chosen, load, cell, options)
     attributes = output_attributes(load)
@@ -130,6 +130,12 @@ def _checked_model(name: object, load: object, options: Mapping[str, Any]) -> Mo
     if unknown:
         raise InputError(unknown)
     return model
+
+
+def _evaluate_reference(load: str, cell: Cell, options: Mapping[str, Any]) -> PointResults:
+    from bondcell.fem.reference import solve
+
+    return solve_points(cell.ravel(), solve, load=load, **options)
 
 
 def _evaluate_analytic(

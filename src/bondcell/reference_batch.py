@@ -7,6 +7,7 @@ import xarray as xr
 from bondcell.batches import REFERENCE, Batch, batch_dataset, cell_at
 from bondcell.by_geometry import Progress, solve_points
 from bondcell.errors import InputError, Violation
+from bondcell.fem.reference import solve
 from bondcell.inputs import cell_from_study
 
 
@@ -39,6 +40,6 @@ def compute_reference(
     cell, _ = cell_from_study(study)
     positions = batch.points(cell)
     results = solve_points(
-        cell_at(cell, positions), load=load, progress=progress, bc=condition, tolerance=tolerance
+        cell_at(cell, positions), solve, load, progress, bc=condition, tolerance=tolerance
     )
     return batch_dataset(positions, {batch.method: results}, load)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
@@ -32,19 +32,30 @@ def source_files(*modules: str) -> list[Path]:
     >>> [path.name for path in source_files("bondcell.storage")]
     ['errors.py', 'storage.py']
     """
+    return _closure(_path(module) for module in modules)
+
+
+def script_sources(script: str | Path) -> list[Path]:
+    """Source files of the package that a script outside it rests on, sorted.
+
+    Parameters
+    ----------
+    script
+        A Python file; it is read, not run. Modules that the package imports only when a function
+        is called have to be imported by the script itself to be counted.
+    """
+    return _closure(_imported(Path(script)))
+
+
+def _closure(paths: Iterable[Path]) -> list[Path]:
     found: set[Path] = set()
-    waiting = [_path(module) for module in modules]
+    waiting = list(paths)
     while waiting:
         path = waiting.pop()
         if path not in found:
             found.add(path)
             waiting.extend(_imported(path))
     return sorted(found)
-
-
-def package_files(package: str) -> list[Path]:
-    """Every source file of a package or subpackage (``"bondcell.fem"``), sorted."""
-    return sorted(_path(package).parent.glob("**/*.py"))
 
 
 def _path(module: str) -> Path:

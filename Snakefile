@@ -1,0 +1,22 @@
+# Parameters -> batches of points -> study.nc -> tables and figures -> report.
+#   snakemake                              every scene of params/study.yaml and the report
+#   snakemake results/<scene>/study.nc     one scene, listed or not
+#   snakemake results/report.html          the report
+from snakemake.utils import min_version
+
+min_version("9.5")
+
+
+include: "workflow/rules/prepare.smk"
+include: "workflow/rules/compute.smk"
+include: "workflow/rules/collect.smk"
+include: "workflow/rules/tables.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/report.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        "results/report.html",
+        lambda wildcards: [path for scene in study_scenes() for path in scene_results(scene)],

@@ -1,0 +1,62 @@
+"""Files of batches: sealed with what they were computed for, refused if that is another thing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from bondcell import provenance
+from bondcell.errors import DataError, Violation
+from bondcell.status import Status
+from bondcell.storage import read_dataset, write_dataset
+
+SEAL = "digest"
+
+
+def write_batch(dataset: xr.Dataset, path: str | Path, digest: str) -> None:
+    """Store a batch with the digest of its parameters and the machine that computed it.
+
+    Parameters
+    ----------
+    dataset
+        Results of the batch.
+    path
+        The file.
+    digest
+        Identity of the parameters.
+    """
+    write_dataset(dataset.assign_attrs({SEAL: digest, **provenance.machine()}), path)
+
+
+def read_batch(path: str | Path, digest: str) -> xr.Dataset:
+    """Read a batch that was computed for these parameters.
+
+    Raises
+    ------
+    DataError
+        The file is damaged, or was computed for other parameters.
+    """
+    batch = read_dataset(path)
+    sealed = batch.attrs.get(SEAL)
+    if sealed != digest:
+        allowed = f"{digest}: delete the file to compute it again"
+        raise DataError([Violation(SEAL, sealed, allowed)], str(path))
+    return batch
+
+
+def describe(batch: xr.Dataset) -> str:
+    """How many of a batch's points have a value, and what became of the others.
+
+    Examples
+    --------
+    >>> describe(xr.Dataset({"status": (("method", "point"), np.array([[0, 0, 6, 1]]))}))
+    '3/4 points, diverges: 1'
+    """
+    status = batch["status"].values
+    codes, counts = np.unique(status, return_counts=True)
+    found = dict(zip((Status(int(code)) for code in codes), counts.tolist(), strict=True))
+    good = sum(count for flag, count in found.items() if flag.has_value)
+    failed = [f"{flag.name}: {count}" for flag, count in found.items() if not flag.has_value]
+    return ", ".join([f"{good}/{status.size} points", *failed])

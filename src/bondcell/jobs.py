@@ -1,0 +1,64 @@
+"""What every job of a workflow does around its work: one line at its end, or one clear error."""
+
+from __future__ import annotations
+
+import sys
+import time
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from bondcell.errors import BondcellError
+
+EXIT_BAD_INPUT = 2
+PROGRESS_SECONDS = 10.0
+"""Time between two lines on the progress of a long job [s]."""
+
+
+class Log:
+    """The line that a job prints when it ends, and its progress before."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.result = "done"
+        self._start = self._last = time.perf_counter()
+
+    def progress(self, done: int, total: int) -> None:
+        """Print how far the job is, at most every `PROGRESS_SECONDS`."""
+        now = time.perf_counter()
+        if now - self._last >= PROGRESS_SECONDS and done < total:
+            self._last = now
+            self.say(f"{done}/{total} points, {now - self._start:.0f} s so far")
+
+    def close(self) -> None:
+        """Print the result and the time it took, imports not included."""
+        self.say(f"{self.result}, {time.perf_counter() - self._start:.2f} s")
+
+    def say(self, text: str) -> None:
+        """Print a line under the job's name."""
+        print(f"{self.name}: {text}", file=sys.stderr, flush=True)
+
+
+@contextmanager
+def job(name: str) -> Iterator[Log]:
+    """Run the block as a job: a complaint about input ends it with its message and exit status 2.
+
+    Parameters
+    ----------
+    name
+        What the job's lines begin with.
+
+    Examples
+    --------
+    >>> with job("figure4 analytic") as log:
+    ...     log.result = "25/25 points"
+    """
+    log = Log(name)
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_: log.say(f"warning: {message}")
+        try:
+            yield log
+        except BondcellError as error:
+            log.say(f"error: {error}")
+            raise SystemExit(EXIT_BAD_INPUT) from error
+    log.close()

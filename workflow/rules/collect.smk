@@ -1,0 +1,16 @@
+# One file a scene: results on the swept axes, the convergence study as a group, provenance.
+rule collect:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("collect.py"),
+        analytic=lambda wildcards: batch_files(scene_of(wildcards), "analytic"),
+        reference=lambda wildcards: batch_files(scene_of(wildcards), "fe"),
+        convergence=lambda wildcards: case_files(scene_of(wildcards)),
+    output:
+        "results/{scene}/study.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).digest,
+    message:
+        "{wildcards.scene}: collect"
+    script:
+        "../scripts/collect.py"

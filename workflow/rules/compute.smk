@@ -1,0 +1,44 @@
+# The jobs that compute. A scene's file is `ancient` because it may change without changing the
+# points: what matters is the digest in the parameters.
+rule analytic:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("analytic.py"),
+    output:
+        "results/{scene}/batches/analytic_{part}.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).models_digest,
+    message:
+        "{wildcards.scene}: analytic models, batch {wildcards.part}"
+    script:
+        "../scripts/analytic.py"
+
+
+rule reference:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("reference.py"),
+    output:
+        "results/{scene}/batches/fe_{bc}_{part}.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).reference_digest,
+    message:
+        "{wildcards.scene}: finite elements ({wildcards.bc}), batch {wildcards.part}"
+    script:
+        "../scripts/reference.py"
+
+
+rule convergence:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("convergence.py"),
+    output:
+        "results/{scene}/batches/convergence_{case}.nc",
+    # It measures time: claiming every core keeps other jobs away while it runs on one of them.
+    threads: workflow.cores
+    params:
+        digest=lambda wildcards: scene_of(wildcards).convergence_digest,
+    message:
+        "{wildcards.scene}: convergence of the case {wildcards.case}"
+    script:
+        "../scripts/convergence.py"

@@ -1,0 +1,90 @@
+# What is planned: scenes, their batches, and the source files that each job's work rests on.
+# Scenes are read when a rule asks for them, so a plan costs only what the wanted files need.
+import sys
+import warnings
+from functools import cache
+from pathlib import Path
+
+from bondcell.errors import BondcellError
+from bondcell.sources import script_sources
+
+
+wildcard_constraints:
+    scene="[a-z][a-z0-9_]*",
+    bc="[a-z]+",
+    part=r"\d+of\d+",
+    case="[a-z][a-z0-9_]*",
+
+
+def stop_planning(errors):
+    """Bad input ends the run before any job: every complaint, exit status 2."""
+    print(*errors, sep="\n", file=sys.stderr)
+    raise SystemExit(2)
+
+
+@cache
+def load(path):
+    """Read a scene, or give back what is wrong with it."""
+    from bondcell.scene import load_scene
+
+    with warnings.catch_warnings():
+        warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
+        try:
+            return load_scene(path)
+        except BondcellError as error:
+            return error
+
+
+def scene_of(wildcards):
+    """The scene that a rule's wildcards name."""
+    scene = load(f"params/{wildcards.scene}.yaml")
+    if isinstance(scene, BondcellError):
+        stop_planning([scene])
+    return scene
+
+
+@cache
+def study_scenes():
+    """The scenes of the default study, all of them sound."""
+    from bondcell.study_list import load_study_list
+
+    try:
+        names = load_study_list("params/study.yaml")
+    except BondcellError as error:
+        stop_planning([error])
+    scenes = [load(f"params/{name}.yaml") for name in names]
+    errors = [scene for scene in scenes if isinstance(scene, BondcellError)]
+    if errors:
+        stop_planning(errors)
+    return scenes
+
+
+def batch_files(scene, method):
+    """Files of the batches of a scene by a method (analytic, fe)."""
+    from bondcell.batch_plan import plan
+
+    names = [batch.name for batch in plan(scene) if batch.method.startswith(method)]
+    return [f"results/{scene.name}/batches/{name}.nc" for name in names]
+
+
+def case_files(scene):
+    """Files of a scene's convergence cases."""
+    return [f"results/{scene.name}/batches/convergence_{case}.nc" for case in scene.cases()]
+
+
+def scene_results(scene):
+    """What a scene's part of the report needs."""
+    folder = f"results/{scene.name}"
+    files = [f"{folder}/study.nc", f"{folder}/figures"]
+    if scene.models and scene.reference:
+        files.append(f"{folder}/accuracy.csv")
+    if scene.convergence:
+        files.append(f"{folder}/convergence.csv")
+    return files
+
+
+def sources(script):
+    """The package's files that a script imports: an edit of one of them makes its jobs run again."""
+    paths = script_sources(Path(workflow.basedir) / "workflow" / "scripts" / script)
+    here = Path.cwd()
+    return [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in paths]

@@ -1,0 +1,13 @@
+rule report:
+    input:
+        scenes=lambda _: ancient([f"params/{scene.name}.yaml" for scene in study_scenes()]),
+        results=lambda _: [path for scene in study_scenes() for path in scene_results(scene)],
+        sources=sources("report.py"),
+    output:
+        report("results/report.html", caption="../report/report.rst"),
+    params:
+        digests=lambda _: {scene.name: scene.digest for scene in study_scenes()},
+    message:
+        "report"
+    script:
+        "../scripts/report.py"

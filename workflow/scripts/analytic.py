@@ -1,0 +1,18 @@
+"""Analytic models of a scene at the points of one batch."""
+
+from bondcell.analytic_batch import compute_analytic
+from bondcell.batch_files import describe, write_batch
+from bondcell.batches import Batch
+from bondcell.jobs import job
+from bondcell.planned_scene import planned_scene
+from bondcell.study import build_study
+
+batch = Batch.parse(f"analytic_{snakemake.wildcards.part}")
+with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
+    digest = snakemake.params.digest
+    scene = planned_scene(snakemake.input.scene, models_digest=digest)
+    result = compute_analytic(
+        build_study(scene), batch, scene.models, scene.load, scene.contributions
+    )
+    write_batch(result, snakemake.output[0], digest)
+    log.result = describe(result)
