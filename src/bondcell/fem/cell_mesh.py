@@ -13,6 +13,7 @@ from bondcell.cell import FloatArray
 from bondcell.fem.curved_mapping import CurvedMapping, lobatto_points
 from bondcell.fem.half_cell import (
     MATRIX,
+    MIDDLE_ANGLE,
     PARTICLE_I,
     PARTICLE_J,
     HalfCell,
@@ -56,7 +57,7 @@ class Grading:
 
     growth: float = 3.0
     foot: float = 1e-3
-    foot_growth: float = 6.0
+    foot_growth: float = 3.0
 
 
 @dataclass(frozen=True)
@@ -149,8 +150,8 @@ def _half_cell(
         reach=geometry.gap / 2,
         side_radius=side_end,
         cylinder_radius=geometry.cylinder_radius,
-        tip_breaks=graded_breaks(float(film) / (np.pi / 4), grading.growth),
-        foot_breaks=graded_breaks(float(foot) / (np.pi / 4), grading.foot_growth),
+        tip_breaks=graded_breaks(float(film) / MIDDLE_ANGLE, grading.growth),
+        foot_breaks=graded_breaks(float(foot) / (np.pi / 2 - MIDDLE_ANGLE), grading.foot_growth),
         cut=cut,
         growth=grading.growth,
     )

@@ -86,7 +86,9 @@ def element_matrices(basis: Basis, mode: FourierMode, projected: bool) -> Elemen
     radius = basis.global_coordinates()[0]
     weight = np.sqrt(mode.angle_integral * basis.dx * radius)
     # tables[k] is value/r, d/dr, d/dz of every shape function, times the root of the weight.
-    values = np.stack([np.broadcast_to(phi[0].value, weight.shape) for phi in basis.basis], axis=1)
+    values = np.stack(
+        [np.broadcast_to(np.asarray(phi[0]), weight.shape) for phi in basis.basis], axis=1
+    )
     gradients = np.stack([phi[0].grad for phi in basis.basis], axis=2)
     tables = np.stack([values / radius[:, None], *gradients]) * weight[:, None]
     return ElementMatrices(

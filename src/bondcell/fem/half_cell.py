@@ -23,8 +23,8 @@ Key = tuple[object, ...]
 Point = tuple[float, float]
 
 MATRIX, PARTICLE_I, PARTICLE_J = 0, 1, 2
-MIDDLE_ANGLE = np.pi / 4
-"""Where the arc is split between tip block and foot block."""
+MIDDLE_ANGLE = 0.9
+"""Where the arc is split between tip block and foot block, measured from the tip [rad]."""
 NEAR_FIELD = 0.6
 """How far the ruled elements reach beyond the sphere, in radii; straight blocks follow."""
 

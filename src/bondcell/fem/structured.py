@@ -131,9 +131,7 @@ class CellOperators:
                     marked[scalar + c * self._scalar_count] = True
         return marked
 
-    def _motion(
-        self, mesh: CellMesh, basis: Any, moved: dict[str, tuple[int, ...]]
-    ) -> FloatArray:
+    def _motion(self, mesh: CellMesh, basis: Any, moved: dict[str, tuple[int, ...]]) -> FloatArray:
         """Unit motion of the moved boundaries, and of the whole of particle j.
 
         A constant is the sum of the vertex functions; edge and inner functions stay zero.
