@@ -51,7 +51,7 @@ def describe(batch: xr.Dataset) -> str:
 
     Examples
     --------
-    >>> describe(xr.Dataset({"status": (("method", "point"), np.array([[0, 0, 6, 1]]))}))
+    >>> describe(xr.Dataset({"status": (("model", "point"), np.array([[0, 0, 6, 1]]))}))
     '3/4 points, diverges: 1'
     """
     status = batch["status"].values

@@ -85,21 +85,21 @@ def cell_at(cell: Cell, positions: NDArray[np.int64]) -> Cell:
 def batch_dataset(
     positions: NDArray[np.int64], results: dict[str, PointResults], load: str
 ) -> xr.Dataset:
-    """What a batch's file holds: results by method at points named by their position.
+    """What a batch's file holds: results by model at points named by their position.
 
     Parameters
     ----------
     positions
         Positions of the points in the raveled study, shape (points,).
     results
-        Method -> results at these points.
+        Name -> results at these points.
     load
         Load name.
 
     Returns
     -------
     xarray.Dataset
-        The outputs on ``(method, point)`` and ``point_index(point)``.
+        The outputs on ``(model, point)`` and ``point_index(point)``.
     """
     attributes = output_attributes(load)
     stacked = {
@@ -107,7 +107,7 @@ def batch_dataset(
     }
     index = {"long_name": "position of the point in the raveled study", "units": "1"}
     return xr.Dataset(
-        {name: (("method", "point"), stacked[name], attributes[name]) for name in OUTPUTS}
+        {name: (("model", "point"), stacked[name], attributes[name]) for name in OUTPUTS}
         | {"point_index": ("point", positions, index)},
-        {"method": list(results)},
+        {"model": list(results)},
     )

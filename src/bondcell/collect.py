@@ -43,7 +43,7 @@ def collect(
 
 
 def labels(scene: Scene) -> dict[str, str]:
-    """Method in the batch files -> name in the dimension ``model``, in the scene's order."""
+    """Name in the batch files -> name in the dimension ``model``, in the scene's order."""
     models = {name: name for name in scene.models}
     return models | {f"{REFERENCE}_{bc}": name for name, bc in scene.fe_names.items()}
 

@@ -25,7 +25,7 @@ def cell_from_study(study: xr.Dataset) -> tuple[Cell, tuple[str, ...]]:
     Cell
         Every field has one axis for each dimension, of size 1 where the input does not vary.
     tuple of str
-        The dimensions, in order of appearance.
+        The dimensions that the inputs have, in the study's order.
 
     Raises
     ------
@@ -51,7 +51,8 @@ def cell_from_study(study: xr.Dataset) -> tuple[Cell, tuple[str, ...]]:
         raise InputError([Violation("study", type(study).__name__, "an xarray.Dataset")])
     _check_units(study)
     names = [*study.data_vars, *(name for name in study.coords if name in UNITS)]
-    dims = tuple(dict.fromkeys(dim for name in names for dim in study[name].dims))
+    used = {dim for name in names for dim in study[name].dims}
+    dims = tuple(dim for dim in study.sizes if dim in used)
     empty = [
         Violation(str(dim), "no values", "at least one") for dim in dims if not study.sizes[dim]
     ]

@@ -27,10 +27,10 @@ def merge(
     study
         Inputs on the swept dimensions.
     batches
-        Results on ``(method, point)`` with the points' positions in the raveled study, as
+        Results on ``(model, point)`` with the points' positions in the raveled study, as
         `bondcell.batches.batch_dataset` gives them; other variables on ``(point,)`` are springs.
     labels
-        Method in the batches -> name in the result's dimension ``model``, in the wanted order.
+        Name in the batches -> name in the result's dimension ``model``, in the wanted order.
 
     Returns
     -------
@@ -70,11 +70,11 @@ class _Canvas:
     def add(self, batch: xr.Dataset) -> None:
         """Put a batch's values where they belong."""
         where = self._positions(batch)
-        for method in batch["method"].values.tolist():
+        for method in batch["model"].values.tolist():
             row = self._row(method)
             np.add.at(self.seen[row], where, 1)
             for name in OUTPUTS:
-                getattr(self.results, name)[row, where] = batch[name].sel(method=method).values
+                getattr(self.results, name)[row, where] = batch[name].sel(model=method).values
         for name in sorted({str(name) for name in batch.data_vars} - {*OUTPUTS, INDEX}):
             whole = self.springs.setdefault(name, np.full(self.seen.shape[1], np.nan))
             whole[where] = batch[name].values
@@ -101,5 +101,5 @@ class _Canvas:
 
     def _row(self, method: str) -> int:
         if method not in self.rows:
-            raise DataError([Violation("method", method, f"one of {', '.join(self.rows)}")])
+            raise DataError([Violation("model", method, f"one of {', '.join(self.rows)}")])
         return self.rows[method]
