@@ -89,14 +89,14 @@ def parse_quantity(value: Any, unit: str = "1", *, allow_infinite: bool = False)
 kg is no length
     """
     allowed = describe(unit, allow_infinite=allow_infinite)
+    if allow_infinite and _is_rigid(value):
+        return math.inf
     if isinstance(value, str):
-        number = _parse_text(value, unit, allowed, allow_infinite)
+        number = _parse_text(value, unit, allowed)
     elif isinstance(value, bool) or not isinstance(value, Real):
         raise NotAllowed(allowed)
     else:
         number = _to_float(value)
-    if number == math.inf and allow_infinite:
-        return number
     if not math.isfinite(number):
         raise NotAllowed(f"{allowed}; finite")
     return number
@@ -117,11 +117,15 @@ def describe(unit: str, *, allow_infinite: bool = False) -> str:
     return f"{_KINDS[unit]}{label}, as in {EXAMPLES[unit]}{infinite}"
 
 
-def _parse_text(text: str, unit: str, allowed: str, allow_infinite: bool) -> float:
+def _is_rigid(value: Any) -> bool:
+    if isinstance(value, str):
+        return len(value) <= LONGEST and _RIGID.fullmatch(value) is not None
+    return isinstance(value, float) and value == math.inf
+
+
+def _parse_text(text: str, unit: str, allowed: str) -> float:
     if len(text) > LONGEST:
         raise NotAllowed(f"{allowed}; at most {LONGEST} characters")
-    if allow_infinite and _RIGID.fullmatch(text):
-        return math.inf
     match = _QUANTITY.fullmatch(text)
     if match is None:
         raise NotAllowed(allowed)

@@ -8,12 +8,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple
 
-from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, ValidationError
+from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 
 from bondcell import scene_checks, scene_digests
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import SceneError, Violation
-from bondcell.quantities import NotAllowed, UnitsWarning
+from bondcell.quantities import UnitsWarning
 from bondcell.scene_blocks import Case, CellInputs, Convergence, Reference
 from bondcell.scene_fields import (
     NAME,
@@ -22,48 +22,15 @@ from bondcell.scene_fields import (
     Flag,
     SceneSchema,
     distinct,
-    one_of,
     text_up_to,
 )
+from bondcell.scene_names import LoadName, ModelName
 from bondcell.scene_sweep import Range, Sweep
 from bondcell.scene_violations import KeyPath, as_given, found_violations, null_violations, without
 from bondcell.yaml_loading import load_mapping
 
 RESERVED = ("study",)
 """Names a scene cannot have: params/study.yaml is the list of scenes."""
-
-
-def analytic_models() -> tuple[str, ...]:
-    """Names of the models a scene may list; the reference has a block of its own."""
-    from bondcell.models import MODELS
-
-    return tuple(name for name, model in MODELS.items() if not model.is_reference)
-
-
-def known_loads() -> tuple[str, ...]:
-    """Names of the loads that any model covers."""
-    from bondcell.models import MODELS
-
-    return tuple(dict.fromkeys(load for model in MODELS.values() for load in model.loads))
-
-
-def _model(name: Any) -> str:
-    known = analytic_models()
-    if not isinstance(name, str) or name not in known:
-        hint = "; the reference is asked for by the key `reference`" if name == "fe" else ""
-        raise NotAllowed(f"one of {', '.join(known)}{hint}")
-    return name
-
-
-def _show_models(schema: dict[str, Any]) -> None:
-    schema["enum"] = list(analytic_models())
-
-
-def _show_loads(schema: dict[str, Any]) -> None:
-    schema["enum"] = list(known_loads())
-
-
-ModelName = Annotated[str, BeforeValidator(_model), Field(json_schema_extra=_show_models)]
 
 
 class ConvergenceCase(NamedTuple):
@@ -98,9 +65,7 @@ class Scene(Block):
     reference: Reference | None = Field(
         None, description="Finite element reference; left out: nothing is meshed."
     )
-    load: Annotated[str, one_of(known_loads)] = Field(
-        "normal", description="Load on the cell.", json_schema_extra=_show_loads
-    )
+    load: LoadName = Field("normal", description="Load on the cell.")
     contributions: Flag = Field(
         False, description="Whether to store the springs k_i, k_int, k_j of the model fsi."
     )
@@ -274,7 +239,10 @@ def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None
     try:
         scene = Scene.model_validate(without(data, nulls))
     except ValidationError as error:
-        found = list(found_violations(error, known_keys))
+        # A block emptied by a null is not wrong besides.
+        around = {path[:depth] for path in nulls for depth in range(len(path))}
+        records = found_violations(error, known_keys)
+        found = [(path, violation) for path, violation in records if path not in around]
         violations += [violation for _, violation in found]
         bad |= {_prunable(path) for path, _ in found}
         scene = _salvage(data, set(bad))
@@ -309,7 +277,11 @@ def known_keys(path: KeyPath) -> tuple[str, ...]:
 def scene_json_schema() -> dict[str, Any]:
     """JSON schema of a scene file, for editors."""
     schema = Scene.model_json_schema(schema_generator=SceneSchema)
-    return {"$schema": SceneSchema.schema_dialect, **schema}
+    about = {
+        "title": "bondcell scene",
+        "description": "What it names is computed; what it leaves out is not even imported.",
+    }
+    return {"$schema": SceneSchema.schema_dialect, **schema, **about}
 
 
 def _name_violations(name: str) -> list[Violation]:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from bondcell.cell import UNITS
 from bondcell.quantities import NotAllowed
@@ -164,9 +164,3 @@ class Convergence(Block):
         description="Timed runs of each level; the median is reported.",
         json_schema_extra=_bounds(REPEATS),
     )
-
-    @model_validator(mode="after")
-    def _some_ladder(self) -> Self:
-        if not self.orders and not self.sizes:
-            raise NotAllowed("orders or sizes or both: a ladder to climb")
-        return self

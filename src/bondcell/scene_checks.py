@@ -43,7 +43,7 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
     wrong = {str(path[1]) for path in bad if path[0] in ("cell", "sweep") and len(path) > 1}
     wrong |= {DERIVED[name] for name in wrong if name in DERIVED}
     incomplete = ("cell",) in bad or ("sweep",) in bad
-    given = {name: value for name, value in scene.cell.given().items() if name not in wrong}
+    given = scene.cell.given()
     yield from _range_violations(given, "cell.")
     asked = scene.has_points or scene.sweep or {("models",), ("reference",)} & set(bad)
     if asked and not incomplete:
@@ -89,6 +89,9 @@ def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Viol
         yield Violation("models", None, "something to compute: models, reference or convergence")
     if scene.contributions and "fsi" not in scene.models and ("models",) not in bad:
         yield Violation("contributions", True, "true only with fsi among the models")
+    ladder = scene.convergence and (scene.convergence.orders or scene.convergence.sizes)
+    if scene.convergence and not (ladder or any(path[0] == "convergence" for path in bad)):
+        yield Violation("convergence", None, "with orders or sizes or both: a ladder to climb")
     for i, name in enumerate(scene.models):
         if scene.load not in MODELS[name].loads:
             able = [other for other in MODELS if scene.load in MODELS[other].loads]

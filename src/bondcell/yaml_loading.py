@@ -10,11 +10,14 @@ import yaml
 
 from bondcell.errors import InputError, Violation
 
-LARGEST_FILE = 1_000_000
+LARGEST_FILE = 256_000
 """Largest file that is read, in bytes."""
 
 MOST_NODES = 100_000
 """Most values a file may hold once its aliases are written out."""
+
+MOST_LEVELS = 20
+"""Deepest nesting of a file."""
 
 
 def load_mapping(path: str | Path, error: type[InputError] = InputError) -> dict[str, Any]:
@@ -123,7 +126,7 @@ def _compose(content: bytes) -> yaml.Node | None:
     except yaml.MarkedYAMLError as error:
         raise _Unreadable(_where(error), "valid YAML; is the file complete?") from None
     except RecursionError:
-        raise _Unreadable("nested too deeply", "a few levels of nesting") from None
+        raise _Unreadable("nested too deeply", f"at most {MOST_LEVELS} levels") from None
     finally:
         if loader is not None:
             loader.dispose()
@@ -152,7 +155,9 @@ def _structure_violations(root: yaml.Node) -> list[Violation]:
     violations: list[Violation] = []
     sizes: dict[int, int] = {}
 
-    def visit(node: yaml.Node, path: str) -> int:
+    def visit(node: yaml.Node, path: str, level: int = 0) -> int:
+        if level > MOST_LEVELS:
+            raise _Unreadable("nested too deeply", f"at most {MOST_LEVELS} levels")
         # A node met again is an alias: counted as if written out, looked at once.
         if id(node) in sizes:
             return sizes[id(node)]
@@ -164,9 +169,10 @@ def _structure_violations(root: yaml.Node) -> list[Violation]:
             seen: set[str] = set()
             for key, value in node.value:
                 name = _key(key, path, seen, violations)
-                size += visit(value, f"{path}.{name}" if path else name)
+                size += visit(value, f"{path}.{name}" if path else name, level + 1)
         elif isinstance(node, yaml.SequenceNode):
-            size += sum(visit(item, f"{path}.{i}") for i, item in enumerate(node.value))
+            items = enumerate(node.value)
+            size += sum(visit(item, f"{path}.{i}", level + 1) for i, item in items)
         sizes[id(node)] = size
         return size
 
