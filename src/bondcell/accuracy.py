@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,45 +10,20 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
+from bondcell.result_view import (
+    REFERENCE,
+    analytic_names,
+    axis_values,
+    model_names,
+    reference_names,
+    swept_axes,
+)
 from bondcell.status import Status
-
-REFERENCE = "fe"
-"""Name of the reference in the dimension ``model``; others of its kind are called ``fe_<bc>``."""
 
 SMALL_AXIS = 5
 """An axis with at most this many values also gets a row for each value."""
 
 FloatArray = NDArray[np.float64]
-
-
-def reference_names(study: xr.Dataset) -> list[str]:
-    """Entries of the dimension ``model`` that are finite element references."""
-    return [name for name in _model_names(study) if is_reference(name)]
-
-
-def analytic_names(study: xr.Dataset) -> list[str]:
-    """Entries of the dimension ``model`` that are analytic models."""
-    return [name for name in _model_names(study) if not is_reference(name)]
-
-
-def is_reference(name: str) -> bool:
-    """Whether a name of the dimension ``model`` stands for a finite element reference."""
-    return name == REFERENCE or name.startswith(REFERENCE + "_")
-
-
-def swept_axes(study: xr.Dataset) -> dict[str, int]:
-    """Swept axes of more than one value and their lengths, in the order of the file."""
-    if "stiffness" not in study:
-        return {}
-    sizes = study["stiffness"].sizes
-    return {str(name): size for name, size in sizes.items() if name != "model" and size > 1}
-
-
-def axis_values(study: xr.Dataset, axis: Hashable) -> NDArray[Any]:
-    """Coordinate values of an axis; positions 0, 1, ... when the file has no coordinate for it."""
-    if axis in study.coords:
-        return np.asarray(study.coords[axis].values)
-    return np.arange(study.sizes[axis])
 
 
 def signed_error(study: xr.Dataset, model: str, reference: str = REFERENCE) -> xr.DataArray:
@@ -149,7 +124,7 @@ class _Points:
         stiffness = study["stiffness"].transpose("model", ...)
         self.template = stiffness.isel(model=0, drop=True)
         self.coords = {str(axis): axis_values(study, axis) for axis in self.template.dims}
-        self.position = {name: index for index, name in enumerate(_model_names(study))}
+        self.position = {name: index for index, name in enumerate(model_names(study))}
         self.value = np.asarray(stiffness.values, dtype=float)
         self.status = self._aligned(study, "status", Status.ok, Status.not_computed)
         self.estimate = self._aligned(study, "error_estimate", np.nan, np.nan)
@@ -223,9 +198,3 @@ def _reasons(points: _Points, names: tuple[str, ...], index: tuple[slice, ...]) 
 
 def _reduced(function: Any, values: FloatArray) -> float:
     return float(function(values)) if values.size else float("nan")
-
-
-def _model_names(study: xr.Dataset) -> list[str]:
-    if "stiffness" not in study or "model" not in study["stiffness"].dims:
-        return []
-    return [str(name) for name in study["model"].values]

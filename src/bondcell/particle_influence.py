@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from bondcell.accuracy import axis_values, reference_names, swept_axes
+from bondcell.result_view import axis_values, reference_names, swept_axes
 
 RATIO_AXIS = "modulus_ratio"
 
@@ -121,7 +121,7 @@ def _lines(deviation: xr.DataArray) -> list[tuple[dict[str, Any], FloatArray]]:
     lines = []
     for index in np.ndindex(deviation.shape[:-1]):
         at = {
-            axis: axis_values(deviation.to_dataset(name="d"), axis)[position]
+            axis: axis_values(deviation, axis)[position]
             for axis, position in zip(others, index, strict=True)
         }
         lines.append((at, np.asarray(deviation.values[index], dtype=float)))

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.accuracy import accuracy_table, is_reference, reference_names, signed_error
+from bondcell.accuracy import accuracy_table, signed_error
 from bondcell.particle_influence import negligible_from, particles_negligible_from
+from bondcell.result_view import is_reference, reference_names
 from bondcell.status import Status
 
 

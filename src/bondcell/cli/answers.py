@@ -1,0 +1,112 @@
+"""One model's stiffness of one bond cell, without labels: what the command line prints."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from bondcell.cell import Cell
+from bondcell.models import MODELS
+from bondcell.models.model import Model, Springs
+from bondcell.status import Status
+
+REPEATS = 5
+"""Timed evaluations of an analytic model, of which the median is told."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a model says about one cell.
+
+    Parameters
+    ----------
+    model
+        Name in ``bondcell.MODELS``.
+    stiffness
+        Stiffness [N/m for the normal load], NaN without a value.
+    error_estimate
+        Relative numerical error of that value.
+    error_kind
+        What the estimate is made from.
+    status
+        What became of it.
+    seconds
+        Wall time [s].
+    dof
+        Unknowns, 0 for a closed form.
+    parts
+        The model's own springs.
+    """
+
+    model: str
+    stiffness: float
+    error_estimate: float
+    error_kind: str
+    status: Status
+    seconds: float
+    dof: int = 0
+    parts: Mapping[str, float] = field(default_factory=dict)
+
+
+def answer(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Answer:
+    """Ask one model.
+
+    Parameters
+    ----------
+    cell
+        A single cell.
+    name
+        Name in ``bondcell.MODELS``.
+    load
+        One of the model's loads.
+    options
+        ``bc`` and ``tolerance`` of the reference; analytic models take none.
+    """
+    model = MODELS[name]
+    return _solved(cell, name, load, options) if model.is_reference else _closed(cell, model, load)
+
+
+def _solved(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Answer:
+    from bondcell.by_geometry import solve_points
+
+    found = solve_points(cell.ravel(), load=load, **options)
+    return Answer(
+        model=name,
+        stiffness=float(found.stiffness[0]),
+        error_estimate=float(found.error_estimate[0]),
+        error_kind="discretisation, from the orders p",
+        status=Status(int(found.status[0])),
+        seconds=float(found.seconds[0]),
+        dof=int(found.dof[0]),
+    )
+
+
+def _closed(cell: Cell, model: Model, load: str) -> Answer:
+    seconds = []
+    for _ in range(REPEATS):
+        start = time.perf_counter()
+        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+            springs = model.loads[load](cell)
+        seconds.append(time.perf_counter() - start)
+    stiffness = float(springs.stiffness)
+    good = np.isfinite(stiffness)
+    return Answer(
+        model=model.name,
+        stiffness=stiffness if good else float("nan"),
+        error_estimate=float(np.asarray(springs.relative_error)) if good else float("nan"),
+        error_kind="evaluation of the formula",
+        status=_status(model, cell, springs),
+        seconds=median(seconds),
+        parts={name: float(part) for name, part in springs.parts.items()},
+    )
+
+
+def _status(model: Model, cell: Cell, springs: Springs) -> Status:
+    if not np.isfinite(springs.stiffness):
+        return Status.diverges
+    return Status.ok if np.all(model.is_valid(cell)) else Status.outside_valid_range

@@ -1,0 +1,41 @@
+"""``bondcell models``: what each model is."""
+
+from __future__ import annotations
+
+import argparse
+import textwrap
+from typing import Any
+
+WIDTH = 96
+
+
+def add_to(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    parser = commands.add_parser(
+        "models",
+        help="list the models",
+        description="The models: source, valid range, loads, options.",
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+
+
+def run(_: argparse.Namespace) -> int:
+    """Print an entry for each model."""
+    from bondcell.models import MODELS
+
+    for name, model in MODELS.items():
+        print(f"{name}: {model.title}")
+        lines = {
+            "": model.summary,
+            "source": model.source,
+            "valid": model.valid_range,
+            "loads": ", ".join(model.loads),
+            **{f"option {option}": meaning for option, meaning in model.options.items()},
+        }
+        for label, text in lines.items():
+            if text:
+                said = f"{label}: {text}" if label else text
+                print(textwrap.fill(said, WIDTH, initial_indent="  ", subsequent_indent="    "))
+        print()
+    return 0

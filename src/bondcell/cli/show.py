@@ -1,0 +1,212 @@
+"""``bondcell show``: what a result file holds, and a plot of it on request."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from bondcell.errors import DataError, InputError, Violation
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+SUFFIXES = (".png", ".svg", ".pdf")
+"""Formats of a plot."""
+
+
+def add_to(commands: Any) -> None:
+    """Add the subcommand and its options."""
+    parser = commands.add_parser(
+        "show",
+        help="browse a result file",
+        description="Dimensions, ranges, flags and worst errors of a result, as in "
+        "results/figure4/study.nc.",
+        allow_abbrev=False,
+    )
+    parser.set_defaults(run=run)
+    parser.add_argument("file", metavar="FILE", help="a study.nc")
+    parser.add_argument(
+        "--plot", metavar="OUT", help=f"draw stiffness and errors ({', '.join(SUFFIXES)})"
+    )
+    parser.add_argument("--x", metavar="AXIS", help="axis along x of the plot")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the overview; draw if asked."""
+    from bondcell.storage import read_dataset
+
+    study = read_dataset(arguments.file)
+    ladders = _convergence(arguments.file)
+    _check_content(study, ladders, arguments.file)
+    _check_plot(study, arguments)
+    print(_overview(study, arguments.file))
+    if ladders is not None:
+        sizes = ", ".join(f"{name} {size}" for name, size in ladders.sizes.items())
+        print(f"\nconvergence study (group convergence): {sizes}")
+    if arguments.plot:
+        _draw(study, arguments)
+    return 0
+
+
+def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> None:
+    from bondcell.result_view import model_names
+
+    if not model_names(study) and ladders is None:
+        allowed = "a result of this package: stiffness(model, axes...), or a group convergence"
+        raise DataError([Violation("file", path, allowed)], path)
+
+
+def _check_plot(study: xr.Dataset, arguments: argparse.Namespace) -> None:
+    from bondcell.result_view import swept_axes
+
+    axes = swept_axes(study)
+    violations = []
+    if arguments.plot and Path(arguments.plot).suffix.lower() not in SUFFIXES:
+        allowed = f"a file name that ends in {', '.join(SUFFIXES)}"
+        violations.append(Violation("--plot", arguments.plot, allowed))
+    elif arguments.plot and not Path(arguments.plot).absolute().parent.is_dir():
+        violations.append(Violation("--plot", arguments.plot, "a file in an existing folder"))
+    if arguments.plot and "stiffness" not in study:
+        allowed = "a result with the variable stiffness; this one has none"
+        violations.append(Violation("--plot", arguments.plot, allowed))
+    if arguments.x and arguments.x not in axes:
+        allowed = f"one of the swept axes: {', '.join(axes) or 'none here'}"
+        violations.append(Violation("--x", arguments.x, allowed))
+    if violations:
+        raise InputError(violations)
+    if arguments.x and not arguments.plot:
+        print("bondcell: warning: --x concerns --plot only", file=sys.stderr)
+
+
+def _overview(study: xr.Dataset, path: str) -> str:
+    from bondcell.accuracy import accuracy_table
+
+    blocks = [_heading(study, path), _axes(study)]
+    if "stiffness" in study and "model" in study["stiffness"].dims:
+        blocks.append(_models(study))
+        table = accuracy_table(study)
+        if not table.empty:
+            blocks.append(_errors(study, table))
+    return "\n\n".join(block for block in blocks if block)
+
+
+def _heading(study: xr.Dataset, path: str) -> str:
+    known = ("source", "source_revision", "machine")
+    lines = [f"{path}: {study.attrs.get('title', 'untitled')}"]
+    lines += [f"  {name}: {study.attrs[name]}" for name in known if name in study.attrs]
+    return "\n".join(lines)
+
+
+def _axes(study: xr.Dataset) -> str:
+    """Every dimension, then every input that does not vary."""
+    from bondcell.cell import UNITS
+    from bondcell.cli.text_table import text_table
+    from bondcell.result_view import axis_unit, axis_values
+    from bondcell.wording import meaning, quantity
+
+    rows = []
+    for name, size in study.sizes.items():
+        if name == "model":
+            continue
+        values, unit = axis_values(study, name), axis_unit(study, str(name))
+        span = quantity(values.min(), unit)
+        span += f" to {quantity(values.max(), unit)}" if size > 1 else ""
+        rows.append([str(name), f"{size} values", span, meaning(str(name))])
+    for name, unit in UNITS.items():
+        if name in study and not study[name].dims:
+            rows.append([name, "fixed", quantity(study[name].item(), unit), meaning(name)])
+    return text_table(rows, ["input", "", "range", "meaning"])
+
+
+def _models(study: xr.Dataset) -> str:
+    from bondcell.cli.text_table import text_table
+    from bondcell.result_view import stiffness_unit
+    from bondcell.wording import quantity
+
+    unit = stiffness_unit(study)
+    rows = []
+    for name in study["model"].values:
+        here = study.sel(model=name)
+        values = here["stiffness"].values[~here["stiffness"].isnull().values]
+        span = "no value"
+        if values.size:
+            span = quantity(values.min(), unit)
+            span += f" to {quantity(values.max(), unit)}" if values.size > 1 else ""
+        estimate = _largest(here, "error_estimate", "{:.1e}")
+        seconds = quantity(here["seconds"].median().item(), "s", 3) if "seconds" in here else "-"
+        rows.append([str(name), span, _flags(here), estimate, seconds])
+    header = ["model", "stiffness", "points by flag", "largest error estimate", "median time"]
+    return text_table(rows, header)
+
+
+def _flags(here: xr.Dataset) -> str:
+    import numpy as np
+
+    from bondcell.status import Status
+
+    if "status" not in here:
+        return f"{here['stiffness'].size} points"
+    codes, counts = np.unique(here["status"].values, return_counts=True)
+    names = {flag.value: flag.name for flag in Status}
+    return ", ".join(
+        f"{names.get(int(code), f'flag {int(code)}')} {count}"
+        for code, count in zip(codes, counts, strict=True)
+    )
+
+
+def _largest(here: xr.Dataset, name: str, form: str) -> str:
+    value = float(here[name].max()) if name in here else float("nan")
+    return "-" if value != value else form.format(value)
+
+
+def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
+    from bondcell.cli.text_table import text_table
+    from bondcell.result_view import axis_unit, swept_axes
+    from bondcell.wording import at, percent
+
+    axes = swept_axes(study)
+    rows = []
+    for _, row in table[table["group_axis"] == "all"].iterrows():
+        where = ", ".join(at(axis, row[f"at_{axis}"], axis_unit(study, axis)) for axis in axes)
+        rows.append(
+            [
+                row["model"],
+                row["reference"],
+                percent(row["abs_error_max"]),
+                percent(row["abs_error_median"]),
+                where if row["points"] else "-",
+                str(row["points"]),
+                row["left_out_by"] or "-",
+            ]
+        )
+    header = ["model", "against", "max |error|", "median", "worst at", "points", "left out"]
+    return text_table(rows, header)
+
+
+def _convergence(path: str) -> xr.Dataset | None:
+    from bondcell.storage import read_dataset
+
+    try:
+        return read_dataset(path, group="convergence")
+    except DataError as error:
+        if error.violations[0].field == "group":
+            return None
+        raise
+
+
+def _draw(study: xr.Dataset, arguments: argparse.Namespace) -> None:
+    from bondcell.figures.bars import draw_bars
+    from bondcell.figures.curves import draw_curves
+    from bondcell.figures.style import drawing_style
+    from bondcell.result_view import swept_axes
+    from bondcell.storage import replacing
+
+    with drawing_style():
+        drawing = draw_curves(study, x=arguments.x) if swept_axes(study) else draw_bars(study)
+        suffix = Path(arguments.plot).suffix.lower().removeprefix(".")
+        with replacing(arguments.plot) as temporary:
+            drawing.figure.savefig(temporary, format=suffix)
+    print(f"\ndrawn: {arguments.plot}")

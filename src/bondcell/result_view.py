@@ -1,0 +1,74 @@
+"""What a sweep's result holds: its axes with values and units, its models and references."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from bondcell.cell import UNITS
+
+REFERENCE = "fe"
+"""Name of the reference in the dimension ``model``; others of its kind are called ``fe_<bc>``."""
+
+
+def is_reference(name: str) -> bool:
+    """Whether a name of the dimension ``model`` stands for a finite element reference.
+
+    Examples
+    --------
+    >>> [is_reference(name) for name in ("fe", "fe_clamped", "fsi")]
+    [True, True, False]
+    """
+    return name == REFERENCE or name.startswith(REFERENCE + "_")
+
+
+def model_names(study: xr.Dataset) -> list[str]:
+    """Entries of the dimension ``model``, in the order of the file."""
+    if "stiffness" not in study or "model" not in study["stiffness"].dims:
+        return []
+    return [str(name) for name in study["model"].values]
+
+
+def reference_names(study: xr.Dataset) -> list[str]:
+    """Entries of the dimension ``model`` that are finite element references."""
+    return [name for name in model_names(study) if is_reference(name)]
+
+
+def analytic_names(study: xr.Dataset) -> list[str]:
+    """Entries of the dimension ``model`` that are analytic models."""
+    return [name for name in model_names(study) if not is_reference(name)]
+
+
+def swept_axes(study: xr.Dataset) -> dict[str, int]:
+    """Swept axes of more than one value and their lengths, in the order of the file."""
+    if "stiffness" not in study:
+        return {}
+    sizes = study["stiffness"].sizes
+    return {str(name): size for name, size in sizes.items() if name != "model" and size > 1}
+
+
+def axis_values(study: xr.Dataset | xr.DataArray, axis: Hashable) -> NDArray[Any]:
+    """Coordinate values of an axis; positions 0, 1, ... when the file has no coordinate for it."""
+    if axis in study.coords:
+        return np.asarray(study.coords[axis].values)
+    return np.arange(study.sizes[axis])
+
+
+def axis_unit(study: xr.Dataset, axis: str) -> str:
+    """Unit of an axis: what the file says, else that of the input of this name, else ``1``."""
+    given = study.coords[axis].attrs.get("units") if axis in study.coords else None
+    return str(given or UNITS.get(axis, "1"))
+
+
+def stiffness_unit(study: xr.Dataset) -> str:
+    """Unit of the stiffness as UDUNITS writes it."""
+    return str(study["stiffness"].attrs.get("units", "N m-1"))
+
+
+def load_name(study: xr.Dataset) -> str:
+    """Load of the study, the first word of the stiffness' long name."""
+    return str(study["stiffness"].attrs.get("long_name", "normal")).split()[0]
