@@ -15,8 +15,14 @@ if TYPE_CHECKING:
 JOB_SECONDS = 40.0
 """Work a job should have at most: far more than the second or two that its start costs."""
 
+WORTH_A_JOB = 3.0
+"""Analytic work below this is done where the scene is collected: no job of its own [s]."""
+
 SECONDS_PER_ANALYTIC_POINT = 2e-5
-"""Cost of one analytic model at one point, the slowest of them on a slow core [s]."""
+"""Cost of one analytic model at one point, mean of quick and slow models [s]."""
+
+LARGEST_ANALYTIC_BATCH = 1_000_000
+"""Points of an analytic batch at most: bounds the memory of its job, some 50 bytes a model."""
 
 SECONDS_PER_GEOMETRY = 0.5
 """Cost of meshing and assembling the finite element ladder of one geometry [s]."""
@@ -34,7 +40,8 @@ def plan(scene: Scene) -> list[Batch]:
     Parameters
     ----------
     scene
-        Without a reference no finite element batch is planned, without models no analytic one.
+        Without a reference no finite element batch is planned; an analytic one only where there
+        is enough to do.
     """
     sizes = {name: len(values) for name, values in scene.axes.items()}
     batches = analytic_batches(scene.points, len(scene.models))
@@ -44,15 +51,19 @@ def plan(scene: Scene) -> list[Batch]:
 
 
 def analytic_batches(points: int, models: int) -> list[Batch]:
-    """Batches of the analytic models: usually one.
+    """Batches of the analytic models; none where they are quicker than a job starts.
 
     Examples
     --------
-    >>> [batch.name for batch in analytic_batches(points=500, models=6)]
-    ['analytic_1of1']
+    >>> analytic_batches(points=500, models=6)
+    []
+    >>> [batch.name for batch in analytic_batches(points=500_000, models=6)]
+    ['analytic_1of2', 'analytic_2of2']
     """
     seconds = points * models * SECONDS_PER_ANALYTIC_POINT
-    return _split(ANALYTIC, points, seconds) if models else []
+    if seconds < WORTH_A_JOB:
+        return []
+    return _split(ANALYTIC, points, seconds, at_least=ceil(points / LARGEST_ANALYTIC_BATCH))
 
 
 def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> list[Batch]:
@@ -81,6 +92,6 @@ def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> 
     ]
 
 
-def _split(method: str, items: int, seconds: float) -> list[Batch]:
-    parts = max(1, min(items, ceil(seconds / JOB_SECONDS)))
+def _split(method: str, items: int, seconds: float, at_least: int = 1) -> list[Batch]:
+    parts = max(at_least, min(items, ceil(seconds / JOB_SECONDS)))
     return [Batch(method, part, parts) for part in range(1, parts + 1)]

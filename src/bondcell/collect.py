@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import xarray as xr
 
 from bondcell import provenance
+from bondcell.analytic_batch import compute_analytic
 from bondcell.batch_files import read_batch
-from bondcell.batches import REFERENCE
+from bondcell.batches import ANALYTIC, REFERENCE, Batch
 from bondcell.merge import merge
 
 if TYPE_CHECKING:
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
 
 
 def collect(
-    scene: Scene, study: xr.Dataset | None, analytic: Iterable[Path], reference: Iterable[Path]
+    scene: Scene, study: xr.Dataset | None, analytic: Sequence[Path], reference: Sequence[Path]
 ) -> xr.Dataset:
     """Results at the points of a scene with their provenance.
 
@@ -28,18 +29,43 @@ def collect(
         The scene.
     study
         Its inputs; None if nothing is evaluated at points.
-    analytic, reference
-        Files of its batches.
+    analytic
+        Files of its analytic batches; without any the scene's models are evaluated here.
+    reference
+        Files of its finite element batches.
 
     Raises
     ------
     DataError
         A file is damaged, was computed for other parameters, or points are missing.
     """
+    attributes = provenance.collect(scene)
+    if study is None:
+        return xr.Dataset(attrs=attributes)
     batches = [read_batch(path, scene.models_digest) for path in analytic]
     batches += [read_batch(path, scene.reference_digest) for path in reference]
-    result = xr.Dataset() if study is None else merge(study, batches, labels(scene))
-    return result.assign_attrs(provenance.collect(scene) | machines(batches))
+    attributes |= machines(batches)
+    if scene.models and not analytic:
+        batches.append(
+            compute_analytic(study, Batch(ANALYTIC), scene.models, scene.load, scene.contributions)
+        )
+    return merge(study, batches, labels(scene)).assign_attrs(attributes)
+
+
+def collect_convergence(scene: Scene, files: Iterable[Path]) -> dict[str, xr.Dataset]:
+    """The group ``convergence`` of a scene's file, none if the scene has no such study.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    files
+        Its one file, or none.
+    """
+    groups = {}
+    for path in files:
+        groups["convergence"] = read_batch(path, scene.convergence_digest)
+    return groups
 
 
 def labels(scene: Scene) -> dict[str, str]:

@@ -65,14 +65,14 @@ class _Canvas:
         self.results = PointResults.empty((len(methods), points))
         self.springs: dict[str, FloatArray] = {}
         self.attributes: dict[str, dict[str, Any]] = {}
-        self.seen = np.zeros((len(methods), points), dtype=np.int64)
+        self.seen = np.zeros((len(methods), points), dtype=np.int8)
 
     def add(self, batch: xr.Dataset) -> None:
         """Put a batch's values where they belong."""
         where = self._positions(batch)
         for method in batch["model"].values.tolist():
             row = self._row(method)
-            np.add.at(self.seen[row], where, 1)
+            self.seen[row, where] += 1
             for name in OUTPUTS:
                 getattr(self.results, name)[row, where] = batch[name].sel(model=method).values
         for name in sorted({str(name) for name in batch.data_vars} - {*OUTPUTS, INDEX}):
@@ -97,6 +97,8 @@ class _Canvas:
         if outside.size:
             allowed = f"[0, {self.seen.shape[1]})"
             raise DataError([Violation(INDEX, int(outside[0]), allowed)])
+        if np.any(np.diff(where) <= 0):
+            raise DataError([Violation(INDEX, "unordered", "ascending positions, each once")])
         return where
 
     def _row(self, method: str) -> int:

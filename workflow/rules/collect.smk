@@ -5,7 +5,7 @@ rule collect:
         sources=sources("collect.py"),
         analytic=lambda wildcards: batch_files(scene_of(wildcards), "analytic"),
         reference=lambda wildcards: batch_files(scene_of(wildcards), "fe"),
-        convergence=lambda wildcards: case_files(scene_of(wildcards)),
+        convergence=lambda wildcards: convergence_files(scene_of(wildcards)),
     output:
         "results/{scene}/study.nc",
     params:

@@ -13,7 +13,6 @@ wildcard_constraints:
     scene="[a-z][a-z0-9_]*",
     bc="[a-z]+",
     part=r"\d+of\d+",
-    case="[a-z][a-z0-9_]*",
 
 
 def stop_planning(errors):
@@ -67,9 +66,9 @@ def batch_files(scene, method):
     return [f"results/{scene.name}/batches/{name}.nc" for name in names]
 
 
-def case_files(scene):
-    """Files of a scene's convergence cases."""
-    return [f"results/{scene.name}/batches/convergence_{case}.nc" for case in scene.cases()]
+def convergence_files(scene):
+    """File of a scene's convergence study, if it has one."""
+    return [f"results/{scene.name}/batches/convergence.nc"] if scene.convergence else []
 
 
 def scene_results(scene):
