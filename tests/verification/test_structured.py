@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from bondcell.cell import Cell
 from bondcell.errors import UnsupportedLoad
 from bondcell.fem.cell_mesh import Grading
-from bondcell.fem.reference import FOOT_CUT, estimate, solve
+from bondcell.fem.reference import estimate, solve
 from bondcell.fem.structured import solve_level, split_cell
 from bondcell.models import MODELS
 from bondcell.status import Status
@@ -46,6 +46,14 @@ def test_base_case_agrees_with_another_code(bc, poisson_m, expected):
     assert abs(answer.stiffness[0] / expected - 1) <= answer.error_estimate[0] + 1e-9
 
 
+@pytest.mark.parametrize(
+    ("load", "expected"), [("shear", 29585.863), ("torsion", 0.52187948), ("bending", 2.58039356)]
+)
+def test_other_loads_agree_with_another_code(load, expected):
+    answer = solve(cell(), load=load, tolerance=1e-7)
+    assert answer.stiffness[0] == pytest.approx(expected, rel=1e-7)
+
+
 def test_confined_value_lies_between_cut_cells_from_both_sides():
     """The cusp at the foot is cut off; how its edge is held decides the sign of the error.
 
@@ -54,7 +62,7 @@ def test_confined_value_lies_between_cut_cells_from_both_sides():
     errs to the other side, and both shrink to one limit.
     """
     free = [
-        solve_level(cell(), 10, "confined", Grading(foot=cut)).stiffness
+        solve_level(cell(), 10, "confined", grading=Grading(foot=cut)).stiffness
         for cut in (1e-3, 1e-4, 1e-5)
     ]
     limit = solve(cell(), bc="confined", tolerance=1e-8).stiffness[0]
@@ -189,7 +197,7 @@ def honesty_sample(count, seed):
             radius_j=7.5e-3 * rng.choice([1.0, rng.uniform(0.2, 1)]),
         )
         answer = solve(case, tolerance=1e-5)
-        finer = Grading(growth=2, foot=FOOT_CUT["roller"] / 3)
+        finer = Grading(growth=2, foot=5e-4)
         fine = solve_level(case, int(answer.order[0]) + 2, grading=finer)
         assert answer.status[0] == Status.ok
         yield answer.error_estimate[0], abs(answer.stiffness[0] / fine.stiffness - 1)

@@ -1,1 +1,1 @@
-"""The finite element reference of the bond cell (theory: section "The finite element reference")."""
+"""The finite element reference of the bond cell (theory: "The finite element reference")."""

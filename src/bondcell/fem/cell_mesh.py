@@ -1,4 +1,4 @@
-"""The structured mesh of a bond cell: both halves glued at mid-gap, or one half of a symmetric pair."""
+"""The structured mesh of a bond cell: two halves glued at mid-gap, or half of a symmetric pair."""
 
 from __future__ import annotations
 
@@ -10,19 +10,13 @@ from numpy.typing import NDArray
 from skfem import MeshQuad
 
 from bondcell.cell import FloatArray
+from bondcell.fem.breaks import graded_breaks
 from bondcell.fem.curved_mapping import CurvedMapping, lobatto_points
-from bondcell.fem.half_cell import (
-    MATRIX,
-    MIDDLE_ANGLE,
-    PARTICLE_I,
-    PARTICLE_J,
-    HalfCell,
-    Key,
-    Patch,
-    graded_breaks,
-    side_radius,
-)
+from bondcell.fem.half_cell import FOOT_ANGLE, MIDDLE_ANGLE, NEAR_FIELD, HalfCell, Key
+from bondcell.fem.half_matrix import add_matrix
+from bondcell.fem.half_particle import add_particle
 from bondcell.fem.orientation import orient
+from bondcell.fem.patch import Patch
 
 
 @dataclass(frozen=True)
@@ -53,11 +47,17 @@ class Grading:
         the foot stops when the cylinder is wider than the sphere).
     foot_growth
         Ratio of neighbouring sizes toward the foot.
+    corner
+        Where refinement toward singular corners of held end planes stops, in radii; 0 for none.
+    corner_growth
+        Ratio of neighbouring sizes toward such corners.
     """
 
     growth: float = 3.0
-    foot: float = 1e-3
+    foot: float = 2e-3
     foot_growth: float = 3.0
+    corner: float = 0.0
+    corner_growth: float = 6.0
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,10 @@ class CellMesh:
         Geometry of each element, and +1 or -1 for the direction of its local axis.
     offset
         Half the gap [m].
+    end_height
+        Axial coordinate of end plane j [m].
     region
-        `MATRIX`, `PARTICLE_I` or `PARTICLE_J` of each element.
+        `half_cell.MATRIX`, `PARTICLE_I` or `PARTICLE_J` of each element.
     labels
         Names of boundaries -> vertices on them: ``axis``, ``end_i``, ``end_j``, ``lateral``,
         ``middle`` (only where the mesh ends there).
@@ -85,6 +87,7 @@ class CellMesh:
     patches: tuple[Patch, ...]
     flips: FloatArray
     offset: float
+    end_height: float
     region: NDArray[np.int8]
     labels: dict[str, NDArray[np.int64]]
 
@@ -122,37 +125,62 @@ def build_cell_mesh(geometry: Geometry, grading: Grading, half: bool) -> CellMes
         Only particle i's half up to mid-gap: for a symmetric pair.
     """
     radii = [geometry.radius_i] if half else [geometry.radius_i, geometry.radius_j]
-    sides = [side_radius(radius, geometry.cylinder_radius) for radius in radii]
-    if max(sides) <= 1.25 * min(sides):
-        sides = [max(sides)] * len(sides)
+    sides = _side_radii(radii, geometry.cylinder_radius, grading)
     halves = [
         _half_cell(name, radius, side, geometry, grading)
         for name, radius, side in zip("ij", radii, sides, strict=False)
     ]
     columns = _columns(halves, [0.0, *sides, geometry.cylinder_radius])
     for part in halves:
-        part.build(columns)
-    return _glue(halves, geometry.gap / 2)
+        part.set_columns(columns)
+        add_particle(part)
+        add_matrix(part)
+    return _glue(halves, geometry)
+
+
+def _side_radii(radii: list[float], cylinder_radius: float, grading: Grading) -> list[float]:
+    """Where the ruled elements beside each sphere end: at the lateral surface unless it is far.
+
+    A refined rim needs a block of its own. Two sides that nearly coincide become one.
+    """
+    sides = []
+    for radius in radii:
+        annulus = cylinder_radius - radius
+        near = NEAR_FIELD * radius
+        if annulus > 1.5 * near:
+            sides.append(radius + near)
+        elif grading.corner and annulus > 0.02 * radius:
+            sides.append(radius + annulus / 2)
+        else:
+            sides.append(cylinder_radius)
+    if cylinder_radius not in sides and max(sides) <= 1.25 * min(sides):
+        sides = [max(sides)] * len(sides)
+    return sides
 
 
 def _half_cell(
-    side: str, radius: float, side_end: float, geometry: Geometry, grading: Grading
+    name: str, radius: float, side_radius: float, geometry: Geometry, grading: Grading
 ) -> HalfCell:
     curvature = 1 / geometry.radius_i + 1 / geometry.radius_j
-    film = np.sqrt(2 * geometry.gap / curvature) / radius
+    film = float(np.sqrt(2 * geometry.gap / curvature)) / radius
     annulus = geometry.cylinder_radius - radius
-    cut = annulus == 0
     # Narrow annuli need grading like the film; below the cut they are resolved no further.
-    foot = max(grading.foot, np.sqrt(2 * annulus / radius))
+    foot = max(grading.foot, float(np.sqrt(2 * annulus / radius)))
+    foot_breaks = graded_breaks(foot / FOOT_ANGLE, grading.foot_growth)
+    corner_breaks: list[float] = []
+    if grading.corner:
+        scale = grading.corner / (foot_breaks[0] * FOOT_ANGLE)
+        corner_breaks = graded_breaks(scale, grading.corner_growth)[:-1]
     return HalfCell(
-        side=side,
+        side=name,
         radius=radius,
         reach=geometry.gap / 2,
-        side_radius=side_end,
+        side_radius=side_radius,
         cylinder_radius=geometry.cylinder_radius,
-        tip_breaks=graded_breaks(float(film) / MIDDLE_ANGLE, grading.growth),
-        foot_breaks=graded_breaks(float(foot) / (np.pi / 2 - MIDDLE_ANGLE), grading.foot_growth),
-        cut=cut,
+        tip_breaks=graded_breaks(film / MIDDLE_ANGLE, grading.growth),
+        foot_breaks=foot_breaks,
+        corner_breaks=corner_breaks,
+        cut=annulus == 0,
         growth=grading.growth,
     )
 
@@ -169,7 +197,8 @@ def _columns(halves: list[HalfCell], needed: list[float]) -> list[float]:
     return columns
 
 
-def _glue(halves: list[HalfCell], offset: float) -> CellMesh:
+def _glue(halves: list[HalfCell], geometry: Geometry) -> CellMesh:
+    offset = geometry.gap / 2
     number: dict[Key, int] = {}
     quads, patches, flips, regions = [], [], [], []
     for part in halves:
@@ -200,6 +229,7 @@ def _glue(halves: list[HalfCell], offset: float) -> CellMesh:
         patches=turned,
         flips=np.array(flips),
         offset=offset,
+        end_height=offset + geometry.radius_j,
         region=np.array(regions, dtype=np.int8),
         labels={name: np.unique(vertices) for name, vertices in labels.items()},
     )

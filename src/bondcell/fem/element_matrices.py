@@ -4,9 +4,10 @@ The energy density of an isotropic solid splits without coupling::
 
     sigma : eps = kappa (tr eps)^2 + 2 mu |dev eps|^2
 
-so every element needs two matrices once a geometry; any modulus, Poisson's ratio or Prony state is a
-sum of them. The bulk part is kept as a root ``R`` with ``tr eps`` projected on the element's pressure
-space, ``integral (tr eps)^2 = |R u|^2``, which is what a mixed form needs and avoids locking.
+so every element needs two matrices once a geometry; any modulus, Poisson's ratio or Prony state
+is a sum of them. The bulk part is kept as a root ``R`` with ``tr eps`` projected on the element's
+pressure space, ``integral (tr eps)^2 = |R u|^2``, which is what a mixed form needs and avoids
+locking.
 """
 
 from __future__ import annotations
@@ -35,7 +36,8 @@ class ElementMatrices:
     shear
         Of ``2 mu |dev eps|^2`` at ``mu = 1``, shape (elements, n, n).
     bulk_root
-        ``R`` above, shape (elements, pressures, n); the first row is the element's mean dilatation.
+        ``R`` above, shape (elements, pressures, n); the first row is the element's mean
+        dilatation, and there is none where the mode has no dilatation.
     """
 
     shear: FloatArray
@@ -119,20 +121,22 @@ def _bulk_root(
 ) -> FloatArray:
     elements, shapes, points = tables.shape[1:]
     trace = np.einsum("cxs,s->cx", mode.strain, TRACE)
+    if not trace.any():
+        return np.zeros((elements, 0, len(mode.components) * shapes))
     dilatation = np.zeros((elements, len(mode.components), shapes, points))
     for c, x in zip(*np.nonzero(trace), strict=True):
         dilatation[:, c] += trace[c, x] * tables[x]
-    dilatation = dilatation.reshape(elements, -1, points)
+    flat = dilatation.reshape(elements, -1, points).transpose(0, 2, 1)
     count = round(points**0.5)
     order = basis.elem.p if projected else count
     pressures = _pressure_table(order, count) * weight[:, :, None]
     if projected:
         orthonormal, _ = np.linalg.qr(pressures)
-        return np.asarray(orthonormal.transpose(0, 2, 1) @ dilatation.transpose(0, 2, 1))
+        return np.asarray(orthonormal.transpose(0, 2, 1) @ flat)
     # Without projection any orthonormal basis of the quadrature points will do, constant first.
     mean = weight / np.linalg.norm(weight, axis=1, keepdims=True)
     rotation = _householder(mean)
-    return np.asarray(rotation @ dilatation.transpose(0, 2, 1))
+    return np.asarray(rotation @ flat)
 
 
 def _householder(unit: FloatArray) -> FloatArray:

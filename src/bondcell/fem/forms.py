@@ -1,4 +1,4 @@
-"""The energy of a displacement field as scikit-fem forms: the definition that fast code is tested on.
+"""The energy of a displacement field as scikit-fem forms: what the fast code is tested on.
 
 `bondcell.fem.element_matrices` computes the same matrices by batched products; these forms are what
 they mean. Coordinates are ``x = (r, z)``; the angle around the axis is integrated out.
@@ -31,15 +31,17 @@ def _deviator(strain: Any) -> Any:
     return strain - third * identity
 
 
-@BilinearForm
-def axial_shear(u: Any, v: Any, w: Any) -> Any:
+def _axial_shear(u: Any, v: Any, w: Any) -> Any:
     """Integral of ``2 dev eps(u) : dev eps(v)`` over the solid, mode 0."""
     r = w.x[0]
     return 2 * np.pi * r * 2 * ddot(_deviator(axial_strain(u, r)), _deviator(axial_strain(v, r)))
 
 
-@BilinearForm
-def axial_bulk(u: Any, v: Any, w: Any) -> Any:
+def _axial_bulk(u: Any, v: Any, w: Any) -> Any:
     """Integral of ``tr eps(u) tr eps(v)`` over the solid, mode 0."""
     r = w.x[0]
     return 2 * np.pi * r * _trace(axial_strain(u, r)) * _trace(axial_strain(v, r))
+
+
+axial_shear = BilinearForm(_axial_shear)
+axial_bulk = BilinearForm(_axial_bulk)

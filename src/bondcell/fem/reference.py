@@ -1,4 +1,4 @@
-"""The reference stiffness of many cells of one geometry, with an error estimate from the p-ladder."""
+"""Reference stiffness of many cells of one geometry, with an error estimate from the p-ladder."""
 
 from __future__ import annotations
 
@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.errors import UnsupportedLoad, Violation
-from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
-from bondcell.fem.structured import CellOperators, Materials, split_cell
+from bondcell.fem.cell_mesh import Geometry, build_cell_mesh
+from bondcell.fem.cell_operators import Materials
+from bondcell.fem.structured import CellSolver, Load, find_load, split_cell
 from bondcell.fem.substructure import bulk_to_shear
-from bondcell.fem.supports import NORMAL
 from bondcell.status import Status
 
 ORDERS = (4, 6, 8, 10, 12, 14)
@@ -21,9 +20,6 @@ ORDERS = (4, 6, 8, 10, 12, 14)
 
 ROUND_OFF = (1e-11, 1e-7)
 """Least and largest relative round-off of one solve; it grows with ``kappa/mu``."""
-
-FOOT_CUT = {"roller": 2e-3, "clamped": 2e-3, "confined": 1e-5}
-"""Where the cusp at the foot is cut, in radii: costs less than 1e-9 of the stiffness."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +29,7 @@ class Reference:
     Parameters
     ----------
     stiffness
-        Stiffness [N/m], NaN where the flag says so.
+        Stiffness [N/m; N m/rad for torsion and bending], NaN where the flag says so.
     error_estimate
         Estimated relative error of the discretisation.
     status
@@ -62,14 +58,12 @@ def solve(
     cell
         One-dimensional arrays; ``radius_i``, ``radius_j``, ``gap``, ``cylinder_radius`` constant.
     load, bc
-        ``normal`` with ``roller``, ``clamped`` or ``confined`` end planes and sides.
+        ``normal`` with ``roller``, ``clamped`` or ``confined`` end planes and sides; ``shear``,
+        ``torsion`` or ``bending``, where ``bc`` means nothing.
     tolerance
         Wanted relative error; points that miss it at the highest order are flagged.
     """
-    if load != "normal":
-        raise UnsupportedLoad([Violation("load", load, "normal")])
-    if bc not in NORMAL:
-        raise UnsupportedLoad([Violation("bc", bc, ", ".join(NORMAL))])
+    entry = find_load(load, bc)
     cell = cell.ravel()
     count = cell.shape[0]
     points = [split_cell(cell.take(slice(k, k + 1))) for k in range(count)]
@@ -82,13 +76,13 @@ def solve(
         seconds=np.zeros(count),
     )
     mirrored = np.array([g.is_mirrored and m.is_mirrored for g, m in points])
-    blocked = np.array([_is_blocked(m, bc) for _, m in points])
+    blocked = np.array([(load, bc) == ("normal", "confined") and _is_rigid(m) for _, m in points])
     answer.status[blocked] = Status.diverges
     for half in (True, False):
         chosen = np.flatnonzero((mirrored == half) & ~blocked)
         if chosen.size:
             materials = [points[k][1] for k in chosen]
-            _climb(points[0][0], half, materials, chosen, bc, tolerance, answer)
+            _climb(points[0][0], half, materials, chosen, entry, tolerance, answer)
     return answer
 
 
@@ -97,24 +91,24 @@ def _climb(
     half: bool,
     materials: list[Materials],
     chosen: NDArray[np.int64],
-    bc: str,
+    load: Load,
     tolerance: float,
     answer: Reference,
 ) -> None:
-    """Raise the order for the points still open, and settle those whose estimate is small enough."""
+    """Raise the order for the points still open, until their estimates are small enough."""
     started = time.perf_counter()
-    mesh = build_cell_mesh(geometry, Grading(foot=FOOT_CUT[bc]), half)
+    mesh = build_cell_mesh(geometry, load.grading, half)
     ladders: list[list[float]] = [[] for _ in materials]
     still_open = list(range(len(materials)))
     for order in ORDERS:
-        operators = CellOperators(mesh, order, NORMAL[bc])
+        solver = CellSolver(geometry, load, half, order, mesh)
         for k in still_open:
-            ladders[k].append(_stiffness(operators, materials[k]))
+            ladders[k].append(_stiffness(solver, materials[k]))
         now = time.perf_counter()
         answer.seconds[chosen[still_open]] += (now - started) / len(still_open)
         started = now
         answer.order[chosen[still_open]] = order
-        answer.dof[chosen[still_open]] = operators.dof
+        answer.dof[chosen[still_open]] = solver.dof
         still_open = [k for k in still_open if not estimate(ladders[k], materials[k]) <= tolerance]
         still_open = [k for k in still_open if np.isfinite(ladders[k][-1])]
         if not still_open:
@@ -128,15 +122,15 @@ def _climb(
             answer.status[at] = Status.ok if good else Status.tolerance_not_met
 
 
-def _is_blocked(materials: Materials, bc: str) -> bool:
-    """Whether nothing can give way: an incompressible matrix shut in between rigid bodies."""
+def _is_rigid(materials: Materials) -> bool:
+    """Whether nothing can give way once the sides are held: all parts rigid or incompressible."""
     rigid = np.isinf(materials.young_i) and np.isinf(materials.young_j)
-    return bool(bc == "confined" and rigid and materials.poisson_m == 0.5)
+    return bool(rigid and materials.poisson_m == 0.5)
 
 
-def _stiffness(operators: CellOperators, materials: Materials) -> float:
+def _stiffness(solver: CellSolver, materials: Materials) -> float:
     try:
-        return operators.stiffness(materials)
+        return solver.stiffness(materials)
     except np.linalg.LinAlgError:
         return np.nan
 

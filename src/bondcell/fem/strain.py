@@ -67,3 +67,38 @@ AXIAL = FourierMode(
     angle_integral=2 * np.pi,
 )
 """Mode 0 without swirl: the normal load."""
+
+SWIRL = FourierMode(
+    components=("u_t",),
+    strain=_table({(0, D_R, RT): HALF, (0, OVER_R, RT): -HALF, (0, D_Z, TZ): HALF}, components=1),
+    angle_integral=2 * np.pi,
+)
+"""Mode 0 with swirl alone: the torsion load."""
+
+LATERAL = FourierMode(
+    components=("a", "b", "u_z"),
+    strain=_table(
+        {
+            (0, D_R, RR): 1,
+            (1, D_R, RR): 1,
+            (0, OVER_R, TT): 2,
+            (2, D_Z, ZZ): 1,
+            (0, D_Z, RZ): HALF,
+            (1, D_Z, RZ): HALF,
+            (2, D_R, RZ): HALF,
+            (0, D_R, RT): HALF,
+            (1, D_R, RT): -HALF,
+            (0, OVER_R, RT): -2 * HALF,
+            (0, D_Z, TZ): HALF,
+            (1, D_Z, TZ): -HALF,
+            (2, OVER_R, TZ): -HALF,
+        },
+        components=3,
+    ),
+    angle_integral=np.pi,
+)
+"""Mode 1: the shear and bending loads.
+
+The field is ``U = a + b``, ``V = a - b``: then ``a`` and ``u_z`` vanish on the axis and ``b`` is
+free there, which keeps every strain finite, and a translation across the axis is ``b = 1`` alone.
+"""

@@ -1,197 +1,162 @@
-"""The first discretisation: curved quadrilaterals of high order, one set of operators a geometry."""
+"""The first discretisation: curved quadrilaterals of high order, any load, any materials."""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
 
 import numpy as np
-import scipy.linalg
-from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.fem.cell_mesh import (
-    MATRIX,
-    PARTICLE_I,
-    PARTICLE_J,
-    CellMesh,
-    Geometry,
-    Grading,
-    build_cell_mesh,
-)
-from bondcell.fem.element_matrices import ElementMatrices, cell_basis, element_matrices
+from bondcell.errors import UnsupportedLoad, Violation
+from bondcell.fem.cell_mesh import CellMesh, Geometry, Grading, build_cell_mesh
+from bondcell.fem.cell_operators import CellOperators, Materials
 from bondcell.fem.level import Level
-from bondcell.fem.substructure import Condensed, Substructure
-from bondcell.fem.supports import NORMAL, Supports
+from bondcell.fem.supports import (
+    BEAM,
+    BENDING_HALF,
+    NORMAL,
+    SHEAR_HALF,
+    TORSION,
+    Supports,
+)
+
+CORNER = 3e-6
+"""Where refinement toward the rims of held end planes, where stress is singular, stops [radii]."""
 
 
 @dataclass(frozen=True)
-class Materials:
-    """Elastic constants of one cell: Young's moduli [Pa] and Poisson's ratios."""
-
-    young_i: float
-    young_j: float
-    young_m: float
-    poisson_i: float
-    poisson_j: float
-    poisson_m: float
-
-    @property
-    def is_mirrored(self) -> bool:
-        """Whether both particles are of one material."""
-        return (self.young_i, self.poisson_i) == (self.young_j, self.poisson_j)
-
-    @property
-    def shear_m(self) -> float:
-        """Shear modulus of the matrix [Pa]."""
-        return shear_modulus(self.young_m, self.poisson_m)
-
-
-def shear_modulus(young: float, poisson: float) -> float:
-    """``E / (2 (1 + nu))``, same unit as ``E``."""
-    return young / (2 * (1 + poisson))
-
-
-class CellOperators:
-    """Everything about one geometry, order and load that does not depend on the materials.
+class Load:
+    """How a load is solved.
 
     Parameters
     ----------
-    mesh
-        Structured mesh, of the whole cell or of a symmetric pair's half.
-    order
-        Polynomial order of displacement and geometry.
-    supports
-        Load and boundary condition.
-    projected
-        Mixed form (default) or displacement form; see `element_matrices`.
+    whole
+        Supports of the whole cell.
+    halves
+        Supports of the half of a symmetric pair, in the order that ``join`` takes.
+    join
+        Responses of the halves and the cell's length -> stiffness matrix of the whole.
+    index
+        Which motion of the whole is the load's own.
+    grading
+        Mesh grading that the load needs.
+    """
 
-    Notes
-    -----
-    With the displacement ``u = lift + w``, where the lift moves particle j as a rigid body, the
-    stiffness is ``own - coupling . X^-1 . coupling`` with ``X`` the sum of the condensed parts: the
-    matrix, and each particle times its shear modulus over the matrix's. The particles' energy never
-    meets the rigid motion, so round-off stays at the matrix's scale however stiff they are.
+    whole: Supports
+    halves: tuple[Supports, ...]
+    join: Callable[[list[FloatArray], float], FloatArray]
+    index: int
+    grading: Grading
+
+
+def _alone(responses: list[FloatArray], length: float) -> FloatArray:
+    return responses[0]
+
+
+def _beam(responses: list[FloatArray], length: float) -> FloatArray:
+    """Shear and bending of a symmetric pair from its two symmetric motions.
+
+    Turning one end plane is half a symmetric turn of both and half an antisymmetric one, and the
+    latter is a shift by ``L/2`` seen in a turned frame.
+    """
+    shear = responses[0][0, 0]
+    if len(responses) == 1:
+        return responses[0]
+    coupling = -shear * length / 2
+    bending = responses[1][0, 0] + shear * length**2 / 4
+    return np.array([[shear, coupling], [coupling, bending]])
+
+
+_GRADED = Grading(corner=CORNER)
+LOADS = {
+    ("normal", "roller"): Load(NORMAL["roller"], (NORMAL["roller"],), _alone, 0, Grading()),
+    ("normal", "clamped"): Load(NORMAL["clamped"], (NORMAL["clamped"],), _alone, 0, _GRADED),
+    ("normal", "confined"): Load(
+        NORMAL["confined"], (NORMAL["confined"],), _alone, 0, Grading(foot=1e-5)
+    ),
+    ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading()),
+    ("shear", None): Load(BEAM, (SHEAR_HALF,), _beam, 0, _GRADED),
+    ("bending", None): Load(BEAM, (SHEAR_HALF, BENDING_HALF), _beam, 1, _GRADED),
+}
+"""Load and boundary condition (for the normal load) -> how it is solved."""
+
+
+def find_load(load: str, bc: str | None) -> Load:
+    """The entry of `LOADS`; boundary conditions other than of the normal load do not exist."""
+    key = (load, bc if load == "normal" else None)
+    if key in LOADS:
+        return LOADS[key]
+    known = sorted({name for name, _ in LOADS})
+    if load in known:
+        choices = ", ".join(str(c) for name, c in LOADS if name == load)
+        raise UnsupportedLoad([Violation("bc", bc, choices)])
+    raise UnsupportedLoad([Violation("load", load, ", ".join(known))])
+
+
+class CellSolver:
+    """Operators of one geometry, load and order.
+
+    Parameters
+    ----------
+    geometry
+        Dimensions of the cell.
+    load
+        How the load is solved.
+    half
+        Solve half of a symmetric pair.
+    order
+        Polynomial order.
+    mesh
+        The mesh, if it is there already.
+    projected
+        Mixed form (default) or displacement form.
     """
 
     def __init__(
-        self, mesh: CellMesh, order: int, supports: Supports, projected: bool = True
+        self,
+        geometry: Geometry,
+        load: Load,
+        half: bool,
+        order: int,
+        mesh: CellMesh | None = None,
+        projected: bool = True,
     ) -> None:
-        basis = cell_basis(mesh.topology, mesh.mapping(order), order)
-        matrices = element_matrices(basis, supports.mode, projected)
-        self.order = order
-        self.elements = int(mesh.topology.nelements)
-        self.is_half = PARTICLE_J not in mesh.region
-        self._scalar_count = int(basis.N)
-        self._components = len(supports.mode.components)
-        inner, outer = self._split(order)
-        scalar = np.asarray(basis.element_dofs, dtype=np.int64).T
-        dofs = np.concatenate(
-            [scalar + c * self._scalar_count for c in range(self._components)], axis=1
-        )
-        held = self._marked(mesh, basis, supports.held)
-        motion = self._motion(mesh, basis, supports.moved)
-        self.dof = int(self._components * self._scalar_count - held.sum())
-        used = {
-            part: np.unique(dofs[mesh.region == part][:, outer])
-            for part in (MATRIX, PARTICLE_I, PARTICLE_J)
-        }
-        shared_i = np.intersect1d(used[MATRIX], used[PARTICLE_I])
-        shared_j = np.intersect1d(used[MATRIX], used[PARTICLE_J])
-        self._interfaces = [shared[~held[shared]] for shared in (shared_i, shared_j)]
-        parts = [(MATRIX, np.concatenate(self._interfaces), motion)]
-        still = np.zeros_like(motion)
-        parts.append((PARTICLE_I, self._interfaces[0], still))
-        if not self.is_half:
-            parts.append((PARTICLE_J, self._interfaces[1], still))
-        self._parts = []
-        for part, interface, moving in parts:
-            rows = mesh.region == part
-            own = ElementMatrices(matrices.shear[rows], matrices.bulk_root[rows])
-            self._parts.append(
-                Substructure(own, inner, outer, dofs[rows][:, outer], interface, held, moving)
-            )
-        self._condensed: dict[tuple[int, float], Condensed] = {}
+        self._load, self._half = load, half
+        self._length = geometry.radius_i + geometry.radius_j + geometry.gap
+        mesh = mesh or build_cell_mesh(geometry, load.grading, half)
+        supports = load.halves if half else (load.whole,)
+        self._operators = [CellOperators(mesh, order, s, projected) for s in supports]
 
-    def _split(self, order: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Local unknowns inside the element and on its boundary."""
-        shapes, boundary = (order + 1) ** 2, 4 * order
-        local = np.arange(self._components)[:, None] * shapes + np.arange(shapes)
-        return local[:, boundary:].ravel(), local[:, :boundary].ravel()
+    @cached_property
+    def dof(self) -> int:
+        """Unknowns of all systems solved for a point."""
+        return sum(operators.dof for operators in self._operators)
 
-    def _marked(
-        self, mesh: CellMesh, basis: Any, where: dict[str, tuple[int, ...]]
-    ) -> NDArray[np.bool_]:
-        marked = np.zeros(self._components * self._scalar_count, dtype=bool)
-        for name, components in where.items():
-            if name in mesh.boundary and mesh.boundary[name].size:
-                scalar = basis.get_dofs(facets=mesh.boundary[name]).all()
-                for c in components:
-                    marked[scalar + c * self._scalar_count] = True
-        return marked
+    @property
+    def elements(self) -> int:
+        """Elements of the mesh."""
+        return self._operators[0].elements
 
-    def _motion(self, mesh: CellMesh, basis: Any, moved: dict[str, tuple[int, ...]]) -> FloatArray:
-        """Unit motion of the moved boundaries, and of the whole of particle j.
-
-        A constant is the sum of the vertex functions; edge and inner functions stay zero.
-        """
-        motion = np.zeros(self._components * self._scalar_count)
-        vertices = [
-            np.unique(mesh.topology.facets[:, mesh.boundary[name]])
-            for name in moved
-            if name in mesh.boundary
-        ]
-        vertices.append(np.unique(mesh.topology.t[:, mesh.region == PARTICLE_J]))
-        (components,) = set(moved.values())
-        for c in components:
-            scalar = basis.nodal_dofs[0, np.concatenate(vertices).astype(np.int64)]
-            motion[scalar + c * self._scalar_count] = 1.0
-        return motion
-
-    def condensed(self, part: int, poisson: float) -> Condensed:
-        """One part at one Poisson's ratio; kept, since sweeps come back to it."""
-        key = (part, poisson)
-        if key not in self._condensed:
-            self._condensed[key] = self._parts[part].condense(poisson)
-        return self._condensed[key]
+    def stiffness_matrix(self, materials: Materials) -> FloatArray:
+        """Stiffness of the end plane's motions: one, or shear and rotation with their coupling."""
+        responses = [operators.response(materials) for operators in self._operators]
+        return self._load.join(responses, self._length) if self._half else responses[0]
 
     def stiffness(self, materials: Materials) -> float:
-        """Stiffness of the whole cell for one set of materials [N/m]."""
-        matrix = self.condensed(0, materials.poisson_m)
-        shear_m = materials.shear_m
-        particles = [
-            (materials.young_i, materials.poisson_i),
-            (materials.young_j, materials.poisson_j),
-        ]
-        sizes = [interface.size for interface in self._interfaces]
-        starts = np.concatenate(([0], np.cumsum(sizes)))
-        pressures = np.arange(len(self._parts)) + starts[-1]
-        system = np.zeros((pressures[-1] + 1, pressures[-1] + 1))
-        own = np.concatenate((np.arange(starts[-1]), pressures[:1]))
-        system[np.ix_(own, own)] = matrix.matrix
-        right = np.zeros(len(system))
-        right[own] = matrix.coupling
-        free = np.ones(len(system), dtype=bool)
-        for k in range(len(self._parts) - 1):
-            young, poisson = particles[k]
-            at = np.concatenate((np.arange(starts[k], starts[k + 1]), pressures[k + 1 : k + 2]))
-            if np.isinf(young):
-                free[at] = False
-                continue
-            ratio = shear_modulus(young, poisson) / shear_m
-            system[np.ix_(at, at)] += ratio * self.condensed(k + 1, poisson).matrix
-        answer = scipy.linalg.solve(
-            system[np.ix_(free, free)], right[free], assume_a="gen", check_finite=False
-        )
-        stiffness = shear_m * (matrix.own - right[free] @ answer)
-        return float(stiffness / 2 if self.is_half else stiffness)
+        """Stiffness of the load's own motion [N/m, or N m/rad for rotations]."""
+        matrix = self.stiffness_matrix(materials)
+        index = min(self._load.index, len(matrix) - 1)
+        return float(matrix[index, index])
 
 
 def solve_level(
     cell: Cell,
     order: int,
-    bc: str = "roller",
+    bc: str | None = "roller",
+    load: str = "normal",
     grading: Grading | None = None,
     projected: bool = True,
 ) -> Level:
@@ -204,23 +169,26 @@ def solve_level(
     order
         Polynomial order, at least 2.
     bc
-        ``roller``, ``clamped`` or ``confined``.
+        ``roller``, ``clamped`` or ``confined`` for the normal load.
+    load
+        ``normal``, ``shear``, ``torsion`` or ``bending``.
     grading, projected
-        Mesh grading and form; see `Grading` and `element_matrices`.
+        Mesh grading (the load's own by default) and form; see `Grading` and `element_matrices`.
     """
     geometry, materials = split_cell(cell)
-    started = time.perf_counter()
+    entry = find_load(load, bc)
     half = geometry.is_mirrored and materials.is_mirrored
-    mesh = build_cell_mesh(geometry, grading or Grading(), half)
+    started = time.perf_counter()
+    mesh = build_cell_mesh(geometry, grading or entry.grading, half)
     meshed = time.perf_counter()
-    operators = CellOperators(mesh, order, NORMAL[bc], projected)
+    solver = CellSolver(geometry, entry, half, order, mesh, projected)
     assembled = time.perf_counter()
-    stiffness = operators.stiffness(materials)
+    stiffness = solver.stiffness(materials)
     solved = time.perf_counter()
     return Level(
         stiffness=stiffness,
-        dof=operators.dof,
-        elements=operators.elements,
+        dof=solver.dof,
+        elements=solver.elements,
         seconds_mesh=meshed - started,
         seconds_assembly=assembled - meshed,
         seconds_solve=solved - assembled,

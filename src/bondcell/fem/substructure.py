@@ -33,13 +33,14 @@ def bulk_to_shear(poisson: float) -> float:
 class Condensed:
     """Stiffness of one part seen from its interface, for unit shear modulus.
 
-    The energy is ``1/2 x.matrix.x + x.coupling d + 1/2 own d^2`` at interface displacement ``x`` (the
-    last entry of ``x`` is the kept pressure, a Lagrange multiplier) and prescribed motion ``d``.
+    The energy is ``1/2 x.matrix.x + x.coupling.d + 1/2 d.own.d`` at interface displacement ``x``
+    and prescribed motions ``d``. The last entry of ``x`` is the kept pressure, a Lagrange
+    multiplier, where the part has any.
     """
 
     matrix: FloatArray
     coupling: FloatArray
-    own: float
+    own: FloatArray
 
 
 @dataclass(frozen=True)
@@ -58,8 +59,8 @@ class Substructure:
         Global unknowns shared with other parts, in the order of the condensed matrix.
     held
         Global unknowns that are prescribed, shape (all unknowns,), bool.
-    motion
-        Prescribed values for unit motion, and zero where free, shape (all unknowns,).
+    motions
+        Coefficients of the prescribed motions, zero where nothing moves, shape (all, motions).
     """
 
     matrices: ElementMatrices
@@ -68,72 +69,90 @@ class Substructure:
     dofs: NDArray[np.int64]
     interface: NDArray[np.int64]
     held: NDArray[np.bool_]
-    motion: FloatArray
+    motions: FloatArray
 
     def condense(self, poisson: float) -> Condensed:
         """Eliminate everything but the interface at one Poisson's ratio."""
-        element = self._condense_elements(1 / bulk_to_shear(poisson))
-        return self._condense_part(element)
+        return self._condense_part(self._condense_elements(1 / bulk_to_shear(poisson)))
+
+    @property
+    def _kept_pressures(self) -> int:
+        return min(1, self.matrices.bulk_root.shape[1])
 
     def _condense_elements(self, compliance: float) -> FloatArray:
         """Element matrices on (boundary unknowns, mean pressure), shape (elements, m, m)."""
-        shear, root = self.matrices.shear, self.matrices.bulk_root
-        inner, outer = self.inner, self.outer
-        count, pressures = root.shape[:2]
-        kept, gone = outer.size + 1, inner.size + pressures - 1
-        a_kk = np.zeros((count, kept, kept))
-        a_kk[:, :-1, :-1] = shear[:, outer[:, None], outer]
-        a_kk[:, -1, :-1] = a_kk[:, :-1, -1] = root[:, 0, outer]
-        a_kk[:, -1, -1] = -compliance
-        a_gk = np.zeros((count, gone, kept))
-        a_gk[:, : inner.size, :-1] = shear[:, inner[:, None], outer]
-        a_gk[:, inner.size :, :-1] = root[:, 1:, outer]
-        a_gk[:, : inner.size, -1] = root[:, 0, inner]
-        a_gg = np.zeros((count, gone, gone))
-        a_gg[:, : inner.size, : inner.size] = shear[:, inner[:, None], inner]
-        a_gg[:, inner.size :, : inner.size] = root[:, 1:, inner]
-        a_gg[:, : inner.size, inner.size :] = root[:, 1:, inner].transpose(0, 2, 1)
-        diagonal = np.arange(inner.size, gone)
-        a_gg[:, diagonal, diagonal] = -compliance
-        return np.asarray(a_kk - a_gk.transpose(0, 2, 1) @ np.linalg.solve(a_gg, a_gk))
+        outer, inner, kept = self.outer, self.inner, self._kept_pressures
+        root = self.matrices.bulk_root
+        retained = _mixed_block(self.matrices, outer, root[:, :kept], compliance)
+        gone = _mixed_block(self.matrices, inner, root[:, kept:], compliance)
+        link = np.zeros((len(root), gone.shape[1], retained.shape[1]))
+        link[:, : inner.size, : outer.size] = self.matrices.shear[:, inner[:, None], outer]
+        link[:, inner.size :, : outer.size] = root[:, kept:, outer]
+        link[:, : inner.size, outer.size :] = root[:, :kept, inner].transpose(0, 2, 1)
+        return np.asarray(retained - link.transpose(0, 2, 1) @ np.linalg.solve(gone, link))
 
     def _condense_part(self, element: FloatArray) -> Condensed:
         """Assemble the skeleton and eliminate all but the interface and the first pressure."""
-        number, interface_size, eliminated = self._numbering()
-        size = interface_size + 2 + eliminated
-        columns = np.concatenate((number, self._pressure_numbers()[:, None]), axis=1)
-        free = columns >= 0
-        moved = np.concatenate((self.motion[self.dofs], np.zeros((len(columns), 1))), axis=1)
+        numbers, kept, size = self._numbering()
+        moves = self.motions.shape[1]
         total = np.zeros((size, size))
-        motion = interface_size + 1
-        for matrix, column, is_free, value in zip(element, columns, free, moved, strict=True):
-            at = column[is_free]
-            total[at[:, None], at] += matrix[is_free][:, is_free]
+        pull = np.zeros((size, moves))
+        own = np.zeros((moves, moves))
+        moved = np.zeros((*numbers.shape, moves))
+        moved[:, : self.dofs.shape[1]] = self.motions[self.dofs]
+        for matrix, number, value in zip(element, numbers, moved, strict=True):
+            free = number >= 0
+            at = number[free]
+            total[at[:, None], at] += matrix[free][:, free]
             if value.any():
-                pull = matrix @ value
-                total[at, motion] += pull[is_free]
-                total[motion, motion] += value @ pull
-        kept, gone = slice(0, motion + 1), slice(motion + 1, size)
-        total[motion, :motion] = total[:motion, motion]
-        right = total[gone, kept]
-        reduced = total[kept, kept] - right.T @ scipy.linalg.solve(
-            total[gone, gone], right, assume_a="gen", check_finite=False
-        )
+                force = matrix @ value
+                pull[at] += force[free]
+                own += value.T @ force
+        gone, stay = slice(kept, size), slice(0, kept)
+        right = np.concatenate((total[gone, stay], pull[gone]), axis=1)
+        solved = scipy.linalg.solve(total[gone, gone], right, assume_a="gen", check_finite=False)
+        reduction = right.T @ solved
         return Condensed(
-            matrix=reduced[:-1, :-1], coupling=reduced[:-1, -1], own=float(reduced[-1, -1])
+            matrix=total[stay, stay] - reduction[:kept, :kept],
+            coupling=pull[stay] - reduction[:kept, kept:],
+            own=own - reduction[kept:, kept:],
         )
 
     def _numbering(self) -> tuple[NDArray[np.int64], int, int]:
-        """Position of each skeleton unknown: interface first, then kept pressure, motion, the rest."""
-        count = self.interface.size
+        """Position of each element's skeleton unknowns (-1: prescribed), how many stay, how many.
+
+        Interface first, then the kept pressure, then what will be eliminated.
+        """
+        pressures = self._kept_pressures
+        kept = self.interface.size + pressures
         position = np.full(self.held.size, -1)
-        position[self.interface] = np.arange(count)
+        position[self.interface] = np.arange(self.interface.size)
         mine = np.unique(self.dofs)
         rest = mine[(position[mine] < 0) & ~self.held[mine]]
-        position[rest] = count + 2 + np.arange(rest.size)
-        return position[self.dofs], count, rest.size + len(self.dofs) - 1
+        position[rest] = kept + np.arange(rest.size)
+        size = kept + rest.size
+        numbers = position[self.dofs]
+        if pressures:
+            count = len(self.dofs) - 1
+            means = np.concatenate(([self.interface.size], size + np.arange(count)))
+            numbers = np.concatenate((numbers, means[:, None]), axis=1)
+            size += count
+        return numbers, kept, size
 
-    def _pressure_numbers(self) -> NDArray[np.int64]:
-        _, count, eliminated = self._numbering()
-        first = count + 2 + eliminated - (len(self.dofs) - 1)
-        return np.concatenate(([count], first + np.arange(len(self.dofs) - 1)))
+
+def _mixed_block(
+    matrices: ElementMatrices,
+    rows: NDArray[np.int64],
+    root: FloatArray,
+    compliance: float,
+) -> FloatArray:
+    """Element matrices of some displacement unknowns with some pressures, both their own."""
+    elements, pressures = root.shape[:2]
+    size = rows.size + pressures
+    block = np.zeros((elements, size, size))
+    block[:, : rows.size, : rows.size] = matrices.shear[:, rows[:, None], rows]
+    block[:, rows.size :, : rows.size] = root[:, :, rows]
+    block[:, : rows.size, rows.size :] = root[:, :, rows].transpose(0, 2, 1)
+    at = np.arange(rows.size, size)
+    block[:, at, at] = -compliance
+    return block
