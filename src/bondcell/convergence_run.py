@@ -1,0 +1,259 @@
+"""Climb the ladders of a scene's convergence study and time every level."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from statistics import median
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from bondcell.cell import LONG_NAMES, UNITS, Cell, FloatArray
+from bondcell.convergence import (
+    STAGES,
+    STRUCTURED,
+    TRIANGLES,
+    combine_cases,
+    observed_order,
+    relative_error,
+)
+from bondcell.errors import BondcellError, InputError, MissingLibrary
+from bondcell.evaluate import evaluate
+from bondcell.fem import structured, triangles
+from bondcell.fem.level import Level
+from bondcell.outputs import STIFFNESS_UNITS
+from bondcell.status import Status, cf_flag_attributes
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+MODEL_POINTS = 10_000
+"""Points on which an analytic model is timed: cells that differ a little in their gap."""
+
+Progress = Callable[[int, int], None]
+
+
+_FAILED = Level(np.nan, 0, 0, np.nan, np.nan, np.nan)
+
+
+@dataclass(frozen=True)
+class _Rung:
+    """A level of a ladder as it came out."""
+
+    refinement: float
+    status: Status
+    level: Level
+
+
+def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
+    """Run all cases of a scene's convergence study.
+
+    Parameters
+    ----------
+    scene
+        A scene with a convergence block.
+    progress
+        Called as ``progress(cases_done, cases)`` after each case.
+
+    Returns
+    -------
+    xarray.Dataset
+        On ``(case, method, level)``: ``refinement`` (order p or element size), ``stiffness``
+        [N m-1], ``dof``, ``elements``, ``seconds_mesh``, ``seconds_assembly``, ``seconds_solve``,
+        ``seconds``, ``error``, ``order``, ``status``. On ``(case, model)``: ``model_stiffness``,
+        ``model_error``, ``model_seconds``, ``model_status``. On ``case``: ``reference``,
+        ``reference_error``, ``bc`` and the inputs.
+    """
+    cases = {}
+    for number, name in enumerate(scene.cases(), start=1):
+        cases[name] = run_case(scene, name)
+        if progress:
+            progress(number, len(scene.cases()))
+    return combine_cases(cases)
+
+
+def run_case(scene: Scene, name: str) -> xr.Dataset:
+    """Run one case; dimensions ``(method, level)`` and ``(model,)``, else as `run_convergence`.
+
+    A level that fails is NaN, ``status`` and a warning say why. Errors are relative to the finest
+    level of the first ladder, the structured one; ``reference_error`` is the difference of its two
+    finest levels: errors below it say nothing.
+    """
+    block = scene.convergence
+    if block is None or name not in scene.cases():
+        raise KeyError(f"no convergence case {name!r} in the scene {scene.name!r}")
+    cell, bc = scene.cases()[name]
+    ladders: dict[str, list[_Rung]] = {}
+    if block.orders:
+        solve = partial(structured.solve_level, cell, bc=bc)
+        ladders[STRUCTURED] = _climb(name, solve, "order", block.orders, block.repeats)
+    if block.sizes:
+        solve = partial(triangles.solve_level, cell, bc=bc)
+        ladders[TRIANGLES] = _climb(name, solve, "size", block.sizes, block.repeats)
+    reference, doubt = _reference(ladders)
+    result = xr.merge(
+        [
+            _ladder_dataset(ladders, reference),
+            _model_dataset(cell, scene.models, scene.load, block.repeats, reference),
+            _case_dataset(cell, bc, reference, doubt),
+        ]
+    )
+    return result.assign_attrs(title=f"Convergence study of {scene.name}", repeats=block.repeats)
+
+
+def _climb(
+    case: str,
+    solve: Callable[..., Level],
+    parameter: str,
+    values: Sequence[float],
+    repeats: int,
+) -> list[_Rung]:
+    """Solve every level `repeats` times, after a first run that is not timed: it warms caches."""
+    rungs = []
+    for number, value in enumerate(values):
+        level = partial(solve, **{parameter: value})
+        try:
+            if number == 0:
+                level()
+            rungs.append(_Rung(value, Status.ok, _median([level() for _ in range(repeats)])))
+        except MissingLibrary:
+            raise
+        except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError) as error:
+            warnings.warn(f"case {case}, {parameter} = {value}: {error}", stacklevel=2)
+            rungs.append(_Rung(value, _failure(error), _FAILED))
+    return rungs
+
+
+def _failure(error: Exception) -> Status:
+    if isinstance(error, InputError):
+        return Status.limit_exceeded
+    return Status.mesh_failed if isinstance(error, BondcellError) else Status.solver_failed
+
+
+def _median(runs: Sequence[Level]) -> Level:
+    times = {stage: median(getattr(run, stage) for run in runs) for stage in STAGES}
+    return Level(runs[0].stiffness, runs[0].dof, runs[0].elements, **times)
+
+
+def _reference(ladders: Mapping[str, Sequence[_Rung]]) -> tuple[float, float]:
+    """Finest stiffness of the first ladder that has one, and its relative distance to the next."""
+    for rungs in ladders.values():
+        values = [rung.level.stiffness for rung in rungs if np.isfinite(rung.level.stiffness)]
+        if values:
+            finest = values[-1]
+            return finest, abs(values[-2] / finest - 1) if len(values) > 1 else np.nan
+    return np.nan, np.nan
+
+
+def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) -> xr.Dataset:
+    methods = list(ladders)
+    levels = max((len(rungs) for rungs in ladders.values()), default=0)
+    shape = (len(methods), levels)
+    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds")
+    real = {name: np.full(shape, np.nan) for name in names}
+    count = {name: np.zeros(shape, dtype=np.int64) for name in ("dof", "elements")}
+    status = np.full(shape, Status.not_computed, dtype=np.int8)
+    for row, (method, rungs) in enumerate(ladders.items()):
+        here = row, slice(len(rungs))
+        values = {
+            name: np.array([getattr(rung.level, name) for rung in rungs])
+            for name in ("stiffness", "dof", "elements", *STAGES, "seconds")
+        }
+        values["refinement"] = np.array([rung.refinement for rung in rungs])
+        values["error"] = relative_error(values["stiffness"], reference)
+        values["order"] = observed_order(values["error"], _work(method, values))
+        status[here] = [rung.status for rung in rungs]
+        for name, data in values.items():
+            (count if name in count else real)[name][here] = data
+    arrays = real | count | {"status": status}
+    dims = ("method", "level")
+    return xr.Dataset(
+        {name: (dims, data, _LADDER_ATTRIBUTES[name]) for name, data in arrays.items()},
+        {
+            "method": ("method", methods, {"long_name": "discretisation"}),
+            "level": ("level", np.arange(levels), {"long_name": "level, from coarse to fine"}),
+        },
+    )
+
+
+def _work(method: str, values: Mapping[str, FloatArray]) -> FloatArray:
+    """Logarithm of what grows with refinement, see `observed_order`."""
+    if method == STRUCTURED:
+        return values["refinement"]
+    return np.log(np.maximum(values["dof"], 1)) / 2
+
+
+def _model_dataset(
+    cell: Cell, models: Sequence[str], load: str, repeats: int, reference: float
+) -> xr.Dataset:
+    """Stiffness of each analytic model at the cell, and its time per point on many such cells."""
+    inputs = {name: float(value.ravel()[0]) for name, value in cell.as_dict().items()}
+    spread = inputs.pop("gap") * (1 + 1e-3 * np.linspace(0, 1, MODEL_POINTS))
+    points = xr.Dataset(inputs).assign(gap=("point", spread))
+    stiffness, seconds = np.full(len(models), np.nan), np.full(len(models), np.nan)
+    status = np.full(len(models), Status.not_computed, dtype=np.int8)
+    for row, model in enumerate(models):
+        answers = [evaluate(points, model, load).isel(point=0) for _ in range(repeats + 1)]
+        stiffness[row], status[row] = answers[0]["stiffness"], answers[0]["status"]
+        seconds[row] = median(float(answer["seconds"]) for answer in answers[1:])
+    values = {
+        "model_stiffness": stiffness,
+        "model_error": np.abs(stiffness / reference - 1),
+        "model_seconds": seconds,
+        "model_status": status,
+    }
+    return xr.Dataset(
+        {name: ("model", data, _MODEL_ATTRIBUTES[name]) for name, data in values.items()},
+        {"model": ("model", list(models), {"long_name": "model"})},
+    )
+
+
+def _case_dataset(cell: Cell, bc: str, reference: float, doubt: float) -> xr.Dataset:
+    inputs = {
+        name: ((), float(value.ravel()[0]), {"units": UNITS[name], "long_name": LONG_NAMES[name]})
+        for name, value in cell.as_dict().items()
+    }
+    about = {
+        "reference": ((), reference, _stiffness("finest level of the structured discretisation")),
+        "reference_error": ((), doubt, _number("relative difference of the two finest levels")),
+        "bc": ((), bc, {"long_name": "boundary condition"}),
+    }
+    return xr.Dataset(about | inputs)
+
+
+def _stiffness(long_name: str) -> dict[str, Any]:
+    return {"units": STIFFNESS_UNITS["normal"], "long_name": long_name}
+
+
+def _number(long_name: str) -> dict[str, Any]:
+    return {"units": "1", "long_name": long_name}
+
+
+def _time(long_name: str) -> dict[str, Any]:
+    return {"units": "s", "long_name": long_name}
+
+
+_LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
+    "refinement": _number("polynomial order, or element size relative to the local scale"),
+    "stiffness": _stiffness("normal stiffness of the bond"),
+    "error": _number("error relative to the finest structured level"),
+    "order": _number("observed order in dof^(-1/2) of triangles, exponential rate in p else"),
+    "seconds_mesh": _time("wall time of meshing, median of repeats"),
+    "seconds_assembly": _time("wall time of assembly, median of repeats"),
+    "seconds_solve": _time("wall time of the solution, median of repeats"),
+    "seconds": _time("wall time of all stages"),
+    "dof": _number("degrees of freedom"),
+    "elements": _number("elements of the mesh"),
+    "status": cf_flag_attributes(),
+}
+
+_MODEL_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
+    "model_stiffness": _stiffness("normal stiffness by an analytic model"),
+    "model_error": _number("error of an analytic model relative to the finest structured level"),
+    "model_seconds": _time(f"wall time per point among {MODEL_POINTS}, median of repeats"),
+    "model_status": cf_flag_attributes(),
+}
