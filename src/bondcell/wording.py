@@ -59,6 +59,9 @@ NAMES = {
 }
 """Model names in tables and legends."""
 
+LADDERS = {"structured": "structured mesh, order p", "triangles": "triangles P2, size h"}
+"""Discretisations in tables and legends."""
+
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m": "m", "Pa": "Pa", "s": "s", "N m-1": "N/m", "N m rad-1": "N m/rad"}
 
@@ -72,6 +75,42 @@ def model_name(model: str) -> str:
     'parallel bond'
     """
     return NAMES.get(model, model.replace("_", " "))
+
+
+def model_phrase(model: str) -> str:
+    """A model as it is called within a sentence.
+
+    Examples
+    --------
+    >>> model_phrase("fsi"), model_phrase("slices"), model_phrase("fe")
+    ('FSI', 'the slices model', 'finite elements')
+    """
+    if model == "fsi":
+        return "FSI"
+    name = model_name(model)
+    return name if name.startswith("finite elements") else f"the {name} model"
+
+
+def ladder_name(method: str) -> str:
+    """A discretisation of a convergence study in tables and legends.
+
+    Examples
+    --------
+    >>> ladder_name("structured"), ladder_name("triangles")
+    ('structured mesh, order p', 'triangles P2, size h')
+    """
+    return LADDERS.get(method, method.replace("_", " "))
+
+
+def case_name(case: str) -> str:
+    """A case of a convergence study in headings.
+
+    Examples
+    --------
+    >>> case_name("narrow_gap")
+    'narrow gap'
+    """
+    return case.replace("_", " ")
 
 
 def symbol(axis: str) -> str:

@@ -8,6 +8,7 @@ import re
 import signal
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 
 from bondcell.errors import BondcellError, InputError
 
@@ -32,6 +33,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         Exit status: 0 good, 1 an asked value could not be computed, 2 bad input.
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a terminal may know no Greek letters
+            stream.reconfigure(errors="replace")
     try:
         try:
             chosen = _parser().parse_args(_with_attached_numbers(words))

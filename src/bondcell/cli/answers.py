@@ -73,8 +73,9 @@ def answer(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Answ
 
 def _solved(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Answer:
     from bondcell.by_geometry import solve_points
+    from bondcell.fem.reference import solve
 
-    found = solve_points(cell.ravel(), load=load, **options)
+    found = solve_points(cell.ravel(), solve, load=load, **options)
     return Answer(
         model=name,
         stiffness=float(found.stiffness[0]),

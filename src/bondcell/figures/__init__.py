@@ -1,0 +1,66 @@
+"""Figures of a scene, drawn from its results alone."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bondcell.figures.bars import draw_bars
+from bondcell.figures.convergence import convergence_drawings
+from bondcell.figures.curves import draw_curves
+from bondcell.figures.error_maps import draw_error_maps
+from bondcell.figures.style import Drawing, drawing_style, save
+from bondcell.result_view import model_names, swept_axes
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from bondcell.scene import Scene
+
+
+def draw_scene(
+    scene: Scene, study: xr.Dataset, convergence: xr.Dataset | None, folder: Path
+) -> list[Path]:
+    """Draw everything a scene's results have to show.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    study
+        Its sweep's result; nothing is drawn of one without ``stiffness(model, ...)``.
+    convergence
+        Result of its convergence study, if any.
+    folder
+        Where the figures go.
+
+    Returns
+    -------
+    list of pathlib.Path
+        Every figure as SVG and PNG, captions and descriptions in the files' metadata.
+    """
+    with drawing_style():
+        drawings = [*sweep_drawings(study)]
+        if convergence is not None:
+            drawings += convergence_drawings(convergence)
+        return [path for drawing in drawings for path in save(drawing, folder)]
+
+
+def sweep_drawings(study: xr.Dataset) -> Iterator[Drawing]:
+    """What a sweep's result has to show: bars at one point, else curves, and maps if there are any.
+
+    Parameters
+    ----------
+    study
+        A sweep's result.
+    """
+    if not model_names(study):
+        return
+    if not swept_axes(study):
+        yield draw_bars(study)
+        return
+    yield draw_curves(study)
+    maps = draw_error_maps(study)
+    if maps is not None:
+        yield maps

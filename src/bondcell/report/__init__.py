@@ -1,0 +1,149 @@
+"""The report: one self-contained page on all scenes of a study."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+from markupsafe import Markup, escape
+
+from bondcell.models import MODELS
+from bondcell.report.findings import Finding
+from bondcell.report.sections import Section, build_section
+from bondcell.wording import listed, model_name
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+HEADLINES = 6
+"""Most findings on the first screen."""
+
+_SYMBOL = re.compile(
+    r"(?<![\w/])([A-Za-zν])_(int|FE|[a-z]{1,2})(?![\w])|(?<=/)([A-Za-z])_([a-z])\b"
+)
+
+
+_TIED = re.compile(r" (?=[%=≥])|(?<=[=≥]) ")
+"""Blanks at which a line does not break: before a per cent sign, around an equals sign."""
+
+
+def write_report(results: Path, scenes: Iterable[Scene], path: Path) -> None:
+    """Write the page.
+
+    Parameters
+    ----------
+    results
+        The folder with a folder for each scene; links on the page are relative to it.
+    scenes
+        The study's scenes in order; one without results is named as missing.
+    path
+        The page.
+    """
+    wanted = list(scenes)
+    sections = [section for scene in wanted if (section := build_section(scene, results))]
+    done = {section.name for section in sections}
+    page = (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            sections=sections,
+            missing=[scene.name for scene in wanted if scene.name not in done],
+            headlines=headlines(sections),
+            models=_models(sections),
+            provenance=_provenance(sections),
+            written=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
+        )
+    )
+    path.write_text(page, encoding="utf-8")
+
+
+def headlines(sections: Iterable[Section]) -> list[tuple[Section, Finding]]:
+    """Findings for the first screen: each section's best before any section's second best.
+
+    Parameters
+    ----------
+    sections
+        The page's sections in order.
+    """
+    queues = [
+        [(section, finding) for finding in section.findings if finding.key] for section in sections
+    ]
+    chosen: list[tuple[Section, Finding]] = []
+    for rank in range(max(map(len, queues), default=0)):
+        chosen += [queue[rank] for queue in queues if rank < len(queue)]
+    fresh = {finding.text: (section, finding) for section, finding in reversed(chosen)}
+    return list(reversed(fresh.values()))[:HEADLINES]
+
+
+def with_subscripts(text: str) -> Markup:
+    """Set the symbols in a text with italics and subscripts.
+
+    Examples
+    --------
+    >>> str(with_subscripts("E_i/E_m < 12"))
+    '<i>E</i><sub>i</sub>/<i>E</i><sub>m</sub> &lt; 12'
+    """
+
+    def symbol(match: re.Match[str]) -> str:
+        head, sub = match[1] or match[3], match[2] or match[4]
+        return f"<i>{head}</i><sub>{sub}</sub>"
+
+    unbroken = _TIED.sub("\u00a0", text)
+    return Markup(_SYMBOL.sub(symbol, str(escape(unbroken))))
+
+
+def _environment() -> Environment:
+    environment = Environment(
+        loader=PackageLoader("bondcell.report", "templates"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters["symbols"] = with_subscripts
+    environment.filters["model_name"] = model_name
+    return environment
+
+
+def _models(sections: Iterable[Section]) -> list[dict[str, str]]:
+    """What each model on the page is, from the package's own description."""
+    names = dict.fromkeys(name for section in sections for name in section.models)
+    return [
+        {
+            "name": model_name(name),
+            "title": MODELS[name].title,
+            "summary": MODELS[name].summary,
+            "valid": MODELS[name].valid_range,
+            "source": MODELS[name].source,
+        }
+        for name in names
+        if name in MODELS
+    ]
+
+
+def _provenance(sections: Iterable[Section]) -> list[dict[str, Any]]:
+    """Origins, told once for all scenes that share one."""
+    shared: dict[str, list[str]] = {}
+    for section in sections:
+        shared.setdefault(json.dumps(section.provenance), []).append(section.title)
+    return [
+        {"scenes": listed(titles), "lines": _origin(json.loads(origin))}
+        for origin, titles in shared.items()
+        if json.loads(origin)
+    ]
+
+
+def _origin(given: dict[str, str]) -> list[tuple[str, str]]:
+    lines = []
+    for name, value in given.items():
+        text = value
+        if name == "versions":
+            versions = json.loads(value)
+            text = ", ".join(f"{package} {version}" for package, version in versions.items())
+        lines.append((name.replace("_", " "), text))
+    return lines

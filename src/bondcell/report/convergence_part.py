@@ -1,0 +1,166 @@
+"""What a convergence study shows: sentences and tables."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from bondcell.convergence import STAGES, STRUCTURED, TRIANGLES, convergence_table
+from bondcell.report.findings import Finding
+from bondcell.report.tables import Table
+from bondcell.wording import (
+    case_name,
+    ladder_name,
+    model_name,
+    model_phrase,
+    number,
+    percent,
+    quantity,
+)
+
+TARGET = 1e-6
+"""Error whose cost is told."""
+
+
+def convergence_findings(convergence: xr.Dataset) -> list[Finding]:
+    """What the ladders show, case by case.
+
+    Parameters
+    ----------
+    convergence
+        A convergence study on ``(case, method, level)``.
+    """
+    table = convergence_table(convergence)
+    found: list[Finding] = []
+    for case, rows in table.groupby("case", sort=False):
+        found += _race(str(case), rows)
+        found += _models(str(case), rows)
+        found += _failures(str(case), rows)
+    return found
+
+
+def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
+    """The cost of an error that both discretisations reach, and how the ladders fall."""
+    structured = _ladder(rows, STRUCTURED)
+    triangles = _ladder(rows, TRIANGLES)
+    where = f"Case {case_name(case)} ({rows['bc'].iloc[0]})"
+    cheap = structured[structured["error"] <= TARGET]
+    text = f"{where}:"
+    if not cheap.empty:
+        text += f" the structured mesh reaches {number(TARGET)} with {_cost(cheap.iloc[0])}"
+    elif not structured.empty:
+        best = structured.loc[structured["error"].idxmin()]
+        text += f" the structured mesh reaches {number(best['error'], 2)} with {_cost(best)}"
+    else:
+        return
+    if triangles.empty:
+        yield Finding(f"{text}.")
+        return
+    last = triangles.loc[triangles["error"].idxmin()]
+    text += (
+        f". The triangles, an independent discretisation, come within "
+        f"{number(last['error'], 2)} of it with {_cost(last)}"
+    )
+    order = triangles["order"].dropna()
+    if not order.empty:
+        text += f", at an observed order of {number(order.median(), 2)} in h"
+    same = structured[structured["error"] <= last["error"]]
+    if same.empty:
+        yield Finding(f"{text}.")
+        return
+    factor = last["seconds"] / same.iloc[0]["seconds"]
+    text += f". As accurate, the structured mesh takes {_cost(same.iloc[0])}."
+    key = f"{number(factor, 2)} times"
+    yield Finding(text, key, f"faster than triangles, as accurate, {case_name(case)}")
+
+
+def _models(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
+    """What the analytic models give for how little."""
+    models = rows[rows["level"].isna() & rows["error"].notna()]
+    if models.empty:
+        return
+    best = models.loc[models["error"].idxmin()]
+    text = f"{case_name(case).capitalize()}: {_model(best)} is the closest analytic model"
+    if (models["method"] == "fsi").any() and best["method"] != "fsi":
+        text += f"; {_model(models[models['method'] == 'fsi'].iloc[0])}"
+    yield Finding(f"{text}.")
+
+
+def _failures(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
+    failed = rows[rows["stiffness"].isna()]
+    if not failed.empty:
+        names = ", ".join(f"{row.method}: {row.status}" for row in failed.itertuples())
+        yield Finding(f"Without a value in the case {case_name(case)}: {names}.")
+
+
+def _ladder(rows: pd.DataFrame, method: str) -> pd.DataFrame:
+    return rows[(rows["method"] == method) & rows["error"].notna()]
+
+
+def _cost(row: Any) -> str:
+    return f"{row['dof']} unknowns in {quantity(row['seconds'], 's', 2)}"
+
+
+def _model(row: Any) -> str:
+    return (
+        f"{model_phrase(row['method'])} is off by {percent(row['error'])} "
+        f"in {quantity(row['seconds'], 's', 2)} a point"
+    )
+
+
+def convergence_lines(convergence: xr.Dataset) -> list[Table]:
+    """A table of all levels for each case.
+
+    Parameters
+    ----------
+    convergence
+        A convergence study on ``(case, method, level)``.
+    """
+    table = convergence_table(convergence)
+    tables = []
+    for case, rows in table.groupby("case", sort=False):
+        doubt = float(convergence["reference_error"].sel(case=case))
+        caption = (
+            f"Case {case_name(str(case))} ({rows['bc'].iloc[0]}). Errors are relative to the "
+            f"finest level, which is itself sure to about {number(doubt, 2)}. Order: of the "
+            "element size h for triangles; gain per order p (natural logarithm) for the "
+            "structured mesh. Times are medians of repeats."
+        )
+        tables.append(Table(caption, _HEADER, [_line(row) for _, row in rows.iterrows()]))
+    return tables
+
+
+_HEADER = [
+    "method",
+    "p or h",
+    "unknowns",
+    "elements",
+    "K_n",
+    "error",
+    "order",
+    "mesh",
+    "assembly",
+    "solution",
+    "total time",
+]
+
+
+def _line(row: Any) -> list[str]:
+    is_level = pd.notna(row["level"])
+    method = str(row["method"])
+    whole = [str(row[name]) if pd.notna(row[name]) else "–" for name in ("dof", "elements")]
+    stiffness = f"{row['stiffness']:.8g} N/m" if np.isfinite(row["stiffness"]) else row["status"]
+    return [
+        ladder_name(method) if is_level else model_name(method),
+        number(row["refinement"], 3),
+        *whole,
+        stiffness,
+        number(row["error"], 2),
+        number(row["order"], 2),
+        *(quantity(row[stage], "s", 2) if pd.notna(row[stage]) else "–" for stage in STAGES),
+        quantity(row["seconds"], "s", 2) if pd.notna(row["seconds"]) else "–",
+    ]

@@ -1,0 +1,98 @@
+"""The parts of the page: one section for each scene that has results."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from bondcell.accuracy import accuracy_table
+from bondcell.report.convergence_part import convergence_findings, convergence_lines
+from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
+from bondcell.report.findings import Finding, sweep_findings
+from bondcell.report.setup_table import Line, setup_lines
+from bondcell.report.tables import Table, accuracy_lines, value_lines
+from bondcell.result_view import model_names
+from bondcell.storage import read_dataset
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+FILES = ("study.nc", "accuracy.csv", "convergence.csv")
+"""Files of a scene that the page links."""
+
+
+@dataclass(frozen=True)
+class Link:
+    """A file beside the page."""
+
+    address: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Section:
+    """What the page says about a scene."""
+
+    name: str
+    title: str
+    question: str
+    setup: list[Line]
+    findings: list[Finding]
+    figures: list[EmbeddedFigure]
+    tables: list[Table]
+    links: list[Link]
+    models: list[str]
+    provenance: dict[str, str] = field(default_factory=dict)
+
+
+def build_section(scene: Scene, results: Path) -> Section | None:
+    """The section of a scene, or None when it has no results.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    results
+        The folder with a folder for each scene.
+    """
+    folder = results / scene.name
+    if not (folder / "study.nc").is_file():
+        return None
+    study = read_dataset(folder / "study.nc")
+    ladders = None
+    if scene.convergence is not None:
+        ladders = read_dataset(folder / "study.nc", group="convergence")
+    table = accuracy_table(study)
+    findings = sweep_findings(study, table)
+    tables = [accuracy_lines(study, table), value_lines(study)]
+    if ladders is not None:
+        findings = [*convergence_findings(ladders), *findings]
+        tables = [*convergence_lines(ladders), *tables]
+    return Section(
+        name=scene.name,
+        title=scene.title,
+        question=scene.question or "",
+        setup=setup_lines(scene),
+        findings=findings,
+        figures=embedded_figures(folder / "figures"),
+        tables=[table for table in tables if table is not None],
+        links=_links(folder),
+        models=model_names(study),
+        provenance=_provenance(study, folder),
+    )
+
+
+def _links(folder: Path) -> list[Link]:
+    found = [Link(f"{folder.name}/{name}", name) for name in FILES if (folder / name).is_file()]
+    figures = sorted((folder / "figures").glob("*.svg")) if (folder / "figures").is_dir() else []
+    return found + [
+        Link(f"{folder.name}/figures/{path.name}", path.name.replace("_", " ")) for path in figures
+    ]
+
+
+def _provenance(study: xr.Dataset, folder: Path) -> dict[str, str]:
+    known = ("source", "source_revision", "versions", "machine", "cores", "platform")
+    return {name: str(study.attrs[name]) for name in known if name in study.attrs}

@@ -1,0 +1,80 @@
+"""A scene's parameters as they were given, line by line."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+from bondcell.cell import LONG_NAMES
+from bondcell.wording import MEANINGS, SYMBOLS, listed, model_name, number
+
+if TYPE_CHECKING:
+    from bondcell.scene import Scene
+
+Line = tuple[str, str]
+
+
+def setup_lines(scene: Scene) -> list[Line]:
+    """What was asked for: pairs of a name with its symbol and the value as given.
+
+    Parameters
+    ----------
+    scene
+        A scene.
+    """
+    given: dict[str, Any] = json.loads(scene.given_json)
+    lines = [(_label(name), _value(value)) for name, value in given.get("cell", {}).items()]
+    lines += [
+        (f"{_label(name)}, swept", _axis(axis)) for name, axis in (given.get("sweep") or {}).items()
+    ]
+    if scene.models:
+        lines.append(("models", listed(model_name(name) for name in scene.models)))
+    lines += list(_reference(scene))
+    lines.append(("load", scene.load))
+    lines += list(_convergence(scene, given.get("convergence") or {}))
+    return lines
+
+
+def _reference(scene: Scene) -> Iterator[Line]:
+    if scene.reference is not None:
+        conditions = listed(scene.reference.bc)
+        tolerance = number(scene.reference.tolerance)
+        yield "finite element reference", f"{conditions}; relative tolerance {tolerance}"
+
+
+def _convergence(scene: Scene, given: Mapping[str, Any]) -> Iterator[Line]:
+    if scene.convergence is None:
+        return
+    for name in scene.cases():
+        changes = given.get("cases", {}).get(name, {})
+        words = ", ".join(f"{SYMBOLS.get(k, k)} = {_value(v)}" for k, v in changes.items())
+        yield f"case {name.replace('_', ' ')}", words or "the cell above"
+    if scene.convergence.orders:
+        yield "orders p of the structured mesh", _listed_numbers(scene.convergence.orders)
+    if scene.convergence.sizes:
+        yield "relative element sizes of the triangles", _listed_numbers(scene.convergence.sizes)
+    yield "timed repeats", f"{scene.convergence.repeats}, of which the median is given"
+
+
+def _label(name: str) -> str:
+    meaning = LONG_NAMES.get(name) or MEANINGS.get(name) or name.replace("_", " ")
+    return f"{meaning} {SYMBOLS[name]}" if name in SYMBOLS else meaning
+
+
+def _value(value: Any) -> str:
+    return number(value, 6) if isinstance(value, int | float) else str(value)
+
+
+def _axis(axis: Any) -> str:
+    if isinstance(axis, Mapping):
+        spacing = {"log": "logarithmic"}.get(axis.get("spacing", "linear"), "even")
+        return (
+            f"{axis['points']} values from {_value(axis['start'])} to {_value(axis['stop'])}, "
+            f"{spacing} spacing"
+        )
+    return _listed_numbers(axis) if isinstance(axis, list | tuple) else _value(axis)
+
+
+def _listed_numbers(values: Any) -> str:
+    return ", ".join(_value(value) for value in values)
