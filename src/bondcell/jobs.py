@@ -21,6 +21,7 @@ class Log:
     def __init__(self, name: str) -> None:
         self.name = name
         self.result = "done"
+        self.unit = "points"
         self._start = self._last = time.perf_counter()
 
     def progress(self, done: int, total: int) -> None:
@@ -28,7 +29,7 @@ class Log:
         now = time.perf_counter()
         if now - self._last >= PROGRESS_SECONDS and done < total:
             self._last = now
-            self.say(f"{done}/{total} points, {now - self._start:.0f} s so far")
+            self.say(f"{done}/{total} {self.unit}, {now - self._start:.0f} s so far")
 
     def close(self) -> None:
         """Print the result and the time it took, imports not included."""

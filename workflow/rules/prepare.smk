@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from bondcell.errors import BondcellError
-from bondcell.sources import script_sources
+from bondcell.sources import PACKAGE, script_sources
 
 
 wildcard_constraints:
@@ -84,6 +84,14 @@ def scene_results(scene):
 
 def sources(script):
     """The package's files that a script imports: an edit of one of them makes its jobs run again."""
-    paths = script_sources(Path(workflow.basedir) / "workflow" / "scripts" / script)
+    return from_here(script_sources(Path(workflow.basedir) / "workflow" / "scripts" / script))
+
+
+def data_files(folder):
+    """The package's files in a folder that holds no code."""
+    return from_here(sorted(PACKAGE.joinpath(folder).iterdir()))
+
+
+def from_here(paths):
     here = Path.cwd()
     return [str(path.relative_to(here) if path.is_relative_to(here) else path) for path in paths]

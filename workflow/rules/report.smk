@@ -3,6 +3,7 @@ rule report:
         scenes=lambda _: ancient([f"params/{scene.name}.yaml" for scene in study_scenes()]),
         results=lambda _: [path for scene in study_scenes() for path in scene_results(scene)],
         sources=sources("report.py"),
+        templates=data_files("report/templates"),
     output:
         report("results/report.html", caption="../report/report.rst"),
     params:

@@ -1,18 +1,18 @@
-"""One case of a scene's convergence study, timed on a single thread of a machine of its own."""
+"""The convergence study of a scene, timed on one thread of a machine that does nothing else."""
 
 import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from bondcell.batch_files import write_batch
-from bondcell.convergence import run_case
+from bondcell.convergence_run import run_convergence
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
 
-case = snakemake.wildcards.case
-with job(f"{snakemake.wildcards.scene}: convergence of {case}") as log:
+with job(f"{snakemake.wildcards.scene}: convergence study") as log:
+    log.unit = "cases"
     digest = snakemake.params.digest
     scene = planned_scene(snakemake.input.scene, convergence_digest=digest)
-    result = run_case(scene, case)
+    result = run_convergence(scene, log.progress)
     write_batch(result, snakemake.output[0], digest)
-    log.result = f"{result.sizes}"
+    log.result = f"{result.sizes['case']} cases"
