@@ -9,6 +9,7 @@ general: general model, core and parallel bond
 generatrix: generatrix lines
 slices: plane slices
 parallel_bond: parallel bond
+cementation: cementation theory
 fe: finite elements
 """
 
@@ -17,6 +18,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from bondcell.models.cementation import CEMENTATION
 from bondcell.models.finite_elements import FE
 from bondcell.models.fsi import FSI
 from bondcell.models.general import GENERAL
@@ -26,6 +28,9 @@ from bondcell.models.parallel_bond import PARALLEL_BOND
 from bondcell.models.slices import SLICES
 
 MODELS: Mapping[str, Model] = MappingProxyType(
-    {model.name: model for model in (FSI, GENERAL, GENERATRIX, SLICES, PARALLEL_BOND, FE)}
+    {
+        model.name: model
+        for model in (FSI, GENERAL, GENERATRIX, SLICES, PARALLEL_BOND, CEMENTATION, FE)
+    }
 )
 """Every model by the name that ``bondcell.evaluate`` takes."""

@@ -52,15 +52,27 @@ class Columns:
         return cls(large, small, ledge, cell.gap, soft_large, soft_small)
 
     @classmethod
-    def outside(cls, cell: Cell, ratio: FloatArray) -> Columns:
-        """The lines outside the radius ``ratio * min(R_i, R_j)``, 0 < ratio <= 1."""
+    def outside(cls, cell: Cell, square: FloatArray, complement: FloatArray) -> Columns:
+        """The lines outside a core; `square` is its radius over min(R_i, R_j), squared.
+
+        ``complement = 1 - square`` is given separately: only the caller knows it to full precision.
+        """
         axis = cls.of_cell(cell)
-        radius = ratio * axis.small
-        small = axis.small * np.sqrt((1.0 - ratio) * (1.0 + ratio))
+        small = axis.small * np.sqrt(complement)
         large = np.where(axis.ledge == 0.0, small, np.hypot(small, axis.ledge))
-        dip_large, dip_small = radius**2 / (axis.large + large), radius**2 / (axis.small + small)
-        gap = axis.gap + dip_large + dip_small
-        return cls(large, small, axis.ledge, gap, axis.softness_large, axis.softness_small)
+        core_square = square * axis.small**2
+        dips = core_square / (axis.large + large) + core_square / (axis.small + small)
+        return cls(
+            large, small, axis.ledge, axis.gap + dips, axis.softness_large, axis.softness_small
+        )
+
+    def heights(self, cell: Cell) -> tuple[FloatArray, FloatArray]:
+        """Heights of particle i and particle j on the innermost line [m]."""
+        i_is_large = cell.radius_i >= cell.radius_j
+        return (
+            np.where(i_is_large, self.large, self.small),
+            np.where(i_is_large, self.small, self.large),
+        )
 
     def integral(self) -> FloatArray:
         """Integral of ``r dr / (h_m + (E_m/E_i) h_i + (E_m/E_j) h_j)`` over the lines [m].
@@ -72,15 +84,18 @@ class Columns:
         """
         if not np.any(self.ledge):
             return equal_spheres(self)
+        unequal = self.ledge > 0.0
+        stiffer = self.softness_large + self.softness_small <= 2.0
+        if unequal.all() and stiffer.all():
+            return stiffer_particles(self)
         shape = np.broadcast_shapes(*(getattr(self, f.name).shape for f in fields(self)))
         spread = Columns(*(np.broadcast_to(getattr(self, f.name), shape) for f in fields(self)))
+        unequal, stiffer = np.broadcast_to(unequal, shape), np.broadcast_to(stiffer, shape)
         result = np.empty(shape)
-        unequal = spread.ledge > 0.0
-        mean_stiffer = spread.softness_large + spread.softness_small <= 2.0
         for mask, formula in (
             (~unequal, equal_spheres),
-            (unequal & mean_stiffer, stiffer_particles),
-            (unequal & ~mean_stiffer, softer_particles),
+            (unequal & stiffer, stiffer_particles),
+            (unequal & ~stiffer, softer_particles),
         ):
             if mask.any():
                 result[mask] = formula(spread._take(mask))
@@ -140,17 +155,18 @@ def stiffer_particles(columns: Columns) -> FloatArray:
     rho_less_t_2 = 2.0 * rho * at_rim / (root * one_less_x_rho)
     one_less_t_2 = below_rho + rho_less_t_2
 
+    delta = rho * rho
     outer = x * (
         third_remainder(x, one_less_x)
-        - rho**3 * (third_remainder(x * rho, one_less_x_rho) + below_rho)
-        - rho**4 * x * np.log(one_less_x_rho / (rho * one_less_x))
+        - delta * rho * (third_remainder(x * rho, one_less_x_rho) + below_rho)
+        - delta * delta * x * np.log(one_less_x_rho / (rho * one_less_x))
     )
     inner = (
         columns.small / total
         + t_2 * below_rho
-        + t_2**2 * np.log(one_less_t_2 / rho_less_t_2)
-        - rho**2 * second_remainder(t_2 / rho, rho_less_t_2 / rho)
-        + rho**4 * second_remainder(t_2, one_less_t_2)
+        + t_2 * t_2 * np.log(one_less_t_2 / rho_less_t_2)
+        - delta * second_remainder(t_2 / rho, rho_less_t_2 / rho)
+        + delta * delta * second_remainder(t_2, one_less_t_2)
     )
     both = (outer + inner) / (4.0 * (root - lam))
     return total * (both + ledge_columns(lam, rho, soft_large, at_rim))

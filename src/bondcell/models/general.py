@@ -22,7 +22,7 @@ def normal(cell: Cell, core_radius_ratio: float | None = None) -> Springs:
     cell
         Bond cells of any shape.
     core_radius_ratio
-        Radius of the core, r_b / min(R_i, R_j), in (0, 1]; None chooses `film_radius_ratio`.
+        Radius of the core, r_b / min(R_i, R_j), in (0, 1]; None chooses `film_core`.
 
     Returns
     -------
@@ -44,44 +44,49 @@ def normal(cell: Cell, core_radius_ratio: float | None = None) -> Springs:
     >>> for ratio in (0.1, None, 1.0):
     ...     print(float(normal(cell, core_radius_ratio=ratio).stiffness.round(3)))
     11.477
-    12.052
+    12.026
     149.6
     """
     if core_radius_ratio is None:
-        ratio = film_radius_ratio(cell)
+        square, complement = film_core(cell)
     else:
         ratio = np.asarray(_checked(core_radius_ratio))
-    core = ratio * np.minimum(cell.radius_i, cell.radius_j)
-    k_i = cap(cell.young_i, cell.radius_i, core)
-    k_j = cap(cell.young_j, cell.radius_j, core)
-    k_lr = np.pi * cell.young_m * core**2 / cell.gap
-    outside = Columns.outside(cell, ratio).integral() + annulus(cell)
-    k_par = 2.0 * np.pi * cell.young_m * outside
+        square, complement = ratio**2, (1.0 - ratio) * (1.0 + ratio)
+    core_square = square * np.minimum(cell.radius_i, cell.radius_j) ** 2
+    lines = Columns.outside(cell, square, complement)
+    height_i, height_j = lines.heights(cell)
+    k_i = 2.0 * np.pi * cell.young_i * core_square / (cell.radius_i + height_i)
+    k_j = 2.0 * np.pi * cell.young_j * core_square / (cell.radius_j + height_j)
+    k_lr = np.pi * cell.young_m * core_square / cell.gap
+    k_par = 2.0 * np.pi * cell.young_m * (lines.integral() + annulus(cell))
     stiffness = in_series(k_i, k_lr, k_j) + k_par
     return Springs.of_cell(
         cell, stiffness, RELATIVE_ERROR, k_i=k_i, k_lr=k_lr, k_j=k_j, k_par=k_par
     )
 
 
-def cap(young: FloatArray, radius: FloatArray, core: FloatArray) -> FloatArray:
-    """Spring of a particle inside the core, ``2 pi E a^2/(R + sqrt(R^2 - a^2))`` [N/m]."""
-    height = np.sqrt((radius - core) * (radius + core))
-    return 2.0 * np.pi * young * core**2 / (radius + height)
+def film_core(cell: Cell) -> tuple[FloatArray, FloatArray]:
+    """Default core: up to where the matrix between the particles has about doubled its thickness.
 
-
-def film_radius_ratio(cell: Cell) -> FloatArray:
-    """Core radius at which the matrix between the particles is twice as thick as on the axis.
+    Returns
+    -------
+    square, complement
+        ``(r_b / min(R_i, R_j))^2`` and one less that, each to full precision.
 
     Notes
     -----
-    Near the axis ``h_m = L_g + r^2 / (2 R*)`` with ``1/R* = 1/R_i + 1/R_j``, so
-    ``r_b^2 = 2 R* L_g``, at most min(R_i, R_j). A layer of constant thickness can stand for the
-    matrix up to about there and not beyond; and since the core shrinks with the gap, k_lr has the
-    finite limit ``2 pi E_m R*``, where a core of fixed radius would turn rigid.
+    Near the axis ``h_m = L_g + r^2 / (2 R*)`` with ``1/R* = 1/R_i + 1/R_j``, twice L_g at
+    ``r^2 = 2 R* L_g``. A layer of constant thickness can stand for the matrix up to about there and
+    not beyond. ``1/r_b^2 = 1/(2 R* L_g) + 1/min(R_i, R_j)^2`` is that radius for a narrow gap and
+    stays inside the smaller particle for a wide one. As the core shrinks with the gap, k_lr has the
+    finite limit ``2 pi E_m R*``, where a core of fixed radius would turn rigid. Against finite
+    elements at nu_m = 0 the model is within 20 % for 1e-3 <= L_g/R <= 1 and E_i/E_m >= 1 with this
+    core; with one of 0.7 R it is up to seventy times too stiff.
     """
     large = np.maximum(cell.radius_i, cell.radius_j)
     small = np.minimum(cell.radius_i, cell.radius_j)
-    return np.minimum(1.0, np.sqrt(2.0 * large / (large + small) * (cell.gap / small)))
+    doubling = 2.0 * large / (large + small) * (cell.gap / small)
+    return doubling / (1.0 + doubling), 1.0 / (1.0 + doubling)
 
 
 def _checked(ratio: float) -> float:
