@@ -11,16 +11,10 @@ from types import ModuleType
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from bondcell.cell import FloatArray
 from bondcell.errors import BondcellError
 from bondcell.fem.gmsh_session import gmsh_model
-
-IntArray = NDArray[np.int64]
-
-PARTICLE_I, PARTICLE_J, MATRIX = 1, 2, 3
-"""Material numbers of the triangles."""
+from bondcell.fem.section_mesh import MATRIX, PARTICLE_I, PARTICLE_J, TriangleMesh
 
 LARGEST_SIZE = 0.12
 """Largest element of ``size = 1``, as a fraction of the larger sphere's radius."""
@@ -29,7 +23,6 @@ CUSP_END = 1e-3
 """Height of the triangle that closes a zero-angle end of the matrix."""
 
 _TOUCHES = 1e-9
-_TOLERANCE = 1e-3
 _SIX_NODE_TRIANGLE = 9
 _OPTIONS = {
     "Geometry.Tolerance": 1e-14,
@@ -49,12 +42,16 @@ class Section:
         As in `bondcell.cell.Cell`, in units of the cylinder radius.
     half
         Only ``z <= L/2``; asks for equal radii.
+    fine_corners
+        Refine toward the corners of matrix between end planes and side: where a clamped plane
+        meets a free surface the stress is singular.
     """
 
     radius_i: float
     radius_j: float
     gap: float
     half: bool = False
+    fine_corners: bool = False
 
     @property
     def length(self) -> float:
@@ -65,34 +62,6 @@ class Section:
     def largest_radius(self) -> float:
         """Radius of the larger sphere."""
         return max(self.radius_i, self.radius_j)
-
-
-@dataclass(frozen=True)
-class TriangleMesh:
-    """Second-order triangles.
-
-    Parameters
-    ----------
-    points
-        Coordinates (r, z) of all nodes, shape (2, nodes).
-    triangles
-        Node numbers of each triangle, shape (6, elements): the corners, then the mid-nodes of the
-        sides (0, 1), (1, 2), (2, 0).
-    material
-        `PARTICLE_I`, `PARTICLE_J` or `MATRIX` of each triangle, shape (elements,).
-    lines
-        Nodes of the closed lines ``axis``, ``bottom``, ``top`` (the mid-plane of a half section),
-        ``lateral``, ``arc_i`` and ``arc_j``.
-    """
-
-    points: FloatArray
-    triangles: IntArray
-    material: IntArray
-    lines: dict[str, IntArray]
-
-    def nodes_of(self, material: int) -> IntArray:
-        """Nodes of the closed region of one material."""
-        return np.unique(self.triangles[:, self.material == material])
 
 
 def triangle_mesh(section: Section, size: float) -> TriangleMesh:
@@ -129,7 +98,7 @@ def triangle_mesh(section: Section, size: float) -> TriangleMesh:
             mesh = _read(gmsh)
         except Exception as error:  # gmsh raises nothing more specific
             raise BondcellError(f"gmsh could not mesh {section} at size {size}: {error}") from error
-    if _is_inverted(mesh):
+    if mesh.is_inverted():
         raise BondcellError(f"a triangle of {section} at size {size} is inverted: reduce the size")
     return mesh
 
@@ -227,27 +196,35 @@ def _draw(gmsh: ModuleType, section: Section) -> None:
 def _set_size(gmsh: ModuleType, section: Section, size: float) -> None:
     """Set the local element size.
 
-    h = min(size (|d_i| + |d_j|), size LARGEST_SIZE R, c_i, c_j)
+    h = min(size (|d_i| + |d_j|), size LARGEST_SIZE R, c_i, c_j, a_i, a_j)
 
     with d the distance to a sphere, so that the sum is the distance between the spheres in the film
     and grows outward. Between sphere and side the film is R_c - R + z^2/(2 R) thick; curved
     elements fit in if they are shorter than
-    c = min(size, 1) [sqrt(2 R (R_c - R)) + distance to (R, 0)] / 2.
+    c = min(size, 1) [sqrt(2 R (R_c - R)) + distance to (R, 0)] / 2. Last, a is half the distance
+    to an outer corner, times the size, where corners are to be fine.
     """
     field = gmsh.model.mesh.field
     spheres = ((0.0, section.radius_i), (section.length, section.radius_j))
     film = "+".join(f"Fabs(Sqrt(x^2+(y-{height!r})^2)-{radius!r})" for height, radius in spheres)
     formulas = [f"{size!r}*({film})", repr(size * LARGEST_SIZE * section.largest_radius)]
+    shortest = min(size, 1.0) / 2
     for height, radius in spheres:
         clearance = float(np.sqrt(2 * radius * max(1 - radius, 0.0)))
-        distance = f"Sqrt((x-{radius!r})^2+(y-{height!r})^2+{CUSP_END**2!r})"
-        formulas.append(f"{min(size, 1.0) / 2!r}*({clearance!r}+{distance})")
+        formulas.append(f"{shortest!r}*({clearance!r}+{_distance(radius, height)})")
+        if section.fine_corners and radius < 1 - _TOUCHES:
+            formulas.append(f"{shortest!r}*{_distance(1.0, height)}")
     terms = [field.add("MathEval") for _ in formulas]
     for term, formula in zip(terms, formulas, strict=True):
         field.setString(term, "F", formula)
     smallest = field.add("Min")
     field.setNumbers(smallest, "FieldsList", terms)
     field.setAsBackgroundMesh(smallest)
+
+
+def _distance(r: float, z: float) -> str:
+    """Distance to a point, not below `CUSP_END`, as a formula of gmsh in its x and y."""
+    return f"Sqrt((x-{r!r})^2+(y-{z!r})^2+{CUSP_END**2!r})"
 
 
 def _read(gmsh: ModuleType) -> TriangleMesh:
@@ -268,26 +245,3 @@ def _read(gmsh: ModuleType) -> TriangleMesh:
             material.append(np.full(triangles[-1].shape[1], group))
     points = coordinates.reshape(-1, 3)[:, :2].T
     return TriangleMesh(points, np.hstack(triangles), np.concatenate(material), lines)
-
-
-def _is_inverted(mesh: TriangleMesh) -> bool:
-    """Whether a Jacobian determinant at a node has another sign than that of the straight triangle.
-
-    It is zero at the tip of the triangle that closes a zero-angle end, hence the tolerance.
-    """
-    jacobian = np.einsum("cae,nap->encp", mesh.points[:, mesh.triangles], _gradients_at_nodes())
-    corners = mesh.points[:, mesh.triangles[:3]]
-    straight = np.linalg.det((corners[:, 1:] - corners[:, :1]).transpose(2, 0, 1))
-    ratio = np.linalg.det(jacobian) / straight[:, np.newaxis]
-    return bool(ratio.min() < -_TOLERANCE)
-
-
-def _gradients_at_nodes() -> FloatArray:
-    """Gradients of the shape functions at the nodes, shape (node, function, coordinate)."""
-    corners = np.eye(3)
-    nodes = np.vstack([corners, (corners + np.roll(corners, -1, axis=0)) / 2])
-    slope = np.array([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]])
-    after = np.roll(np.arange(3), -1)
-    at_corners = (4 * nodes - 1)[:, :, np.newaxis] * slope
-    at_sides = 4 * (nodes[:, :, np.newaxis] * slope[after] + nodes[:, after, np.newaxis] * slope)
-    return np.concatenate([at_corners, at_sides], axis=1)

@@ -22,17 +22,9 @@ from skfem import Basis, BilinearForm, ElementTriP2, ElementVector, MeshTri2
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import InputError, Violation
-from bondcell.fem.gmsh_mesh import (
-    MATRIX,
-    PARTICLE_I,
-    PARTICLE_J,
-    IntArray,
-    Section,
-    TriangleMesh,
-    expected_triangles,
-    triangle_mesh,
-)
+from bondcell.fem.gmsh_mesh import Section, expected_triangles, triangle_mesh
 from bondcell.fem.level import Level
+from bondcell.fem.section_mesh import MATRIX, PARTICLE_I, PARTICLE_J, IntArray, TriangleMesh
 
 CONDITIONS = ("roller", "clamped", "confined")
 """Boundary conditions of the normal load (theory: table of section 1)."""
@@ -48,7 +40,7 @@ R, Z = 0, 1
 
 def strain(u: Any, r: FloatArray) -> tuple[Any, Any, Any, Any]:
     """Axisymmetric strain (e_rr, e_tt, e_zz, e_rz) of the displacement (u_r, u_z)."""
-    return u.grad[R, R], u.value[R] / r, u.grad[Z, Z], (u.grad[R, Z] + u.grad[Z, R]) / 2
+    return u.grad[R, R], u[R] / r, u.grad[Z, Z], (u.grad[R, Z] + u.grad[Z, R]) / 2
 
 
 def strain_energy(u: Any, v: Any, w: Any) -> Any:
@@ -125,7 +117,7 @@ def solve_level(cell: Cell, size: float, bc: str = "roller", *, symmetry: bool =
     )
     clock = _Clock()
     with clock("mesh"):
-        mesh = triangle_mesh(_section(point, half), size)
+        mesh = triangle_mesh(_section(point, half, bc), size)
     with clock("assembly"):
         stiffness = _assemble(mesh, point)
     with clock("solve"):
@@ -170,16 +162,22 @@ def _single_point(cell: Cell, size: float, bc: str) -> dict[str, float]:
         violations.append(Violation("bc", bc, f"one of {', '.join(CONDITIONS)}"))
     if not (np.isfinite(size) and size > 0):
         violations.append(Violation("size", size, "(0, inf)"))
-    elif expected_triangles(_section(point, half=False), size) > MOST_TRIANGLES:
+    elif expected_triangles(_section(point, False, bc), size) > MOST_TRIANGLES:
         violations.append(Violation("size", size, f"one that needs <= {MOST_TRIANGLES} triangles"))
     if violations:
         raise InputError(violations)
     return point
 
 
-def _section(point: dict[str, float], half: bool) -> Section:
+def _section(point: dict[str, float], half: bool, bc: str) -> Section:
     unit = point["cylinder_radius"]
-    return Section(point["radius_i"] / unit, point["radius_j"] / unit, point["gap"] / unit, half)
+    return Section(
+        radius_i=point["radius_i"] / unit,
+        radius_j=point["radius_j"] / unit,
+        gap=point["gap"] / unit,
+        half=half,
+        fine_corners=bc == "clamped",
+    )
 
 
 def _assemble(mesh: TriangleMesh, point: dict[str, float]) -> _Stiffness:
