@@ -46,7 +46,8 @@ def draw_bars(study: xr.Dataset, name: str = "stiffness") -> Drawing:
         f"{load} stiffness {mathtext(STIFFNESS_SYMBOLS.get(load, 'K_n'))} [{unit_text(unit)}]"
     )
     axes.grid(visible=False, axis="y")
-    caption = "Stiffness of the bond by each model; in brackets the error against finite elements."
+    brackets = "; in brackets the error against finite elements" if reference_names(study) else ""
+    caption = f"Stiffness of the bond by each model{brackets}."
     description = ". ".join(
         f"{model_name(model)}: {word}" for model, word in zip(models, words, strict=True)
     )

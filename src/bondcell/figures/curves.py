@@ -177,12 +177,12 @@ def _description(study: xr.Dataset, layout: Layout) -> str:
         for model in shown:
             value = _line(here, model)
             ends = f"from {quantity(value[0], unit)} to {quantity(value[-1], unit)}"
-            sentences.append(f"{where + ': ' if where else ''}{model_name(model)} runs {ends}")
+            sentences.append(f"{where + ': ' if where else ''}{model_name(model)} {ends}")
         for reference in reference_names(study)[:1]:
             for model in analytic_names(study):
                 error = signed_error(study, model, reference).isel(panel.index).values
                 if np.isfinite(error).any():
                     low, high = np.nanmin(error), np.nanmax(error)
                     span = f"{percent(low, sign=True)} to {percent(high, sign=True)}"
-                    sentences.append(f"error of {model_name(model)} {span}")
+                    sentences.append(f"Error of {model_name(model)} {span}")
     return ". ".join(sentences) + "."

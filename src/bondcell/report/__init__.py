@@ -15,7 +15,7 @@ from markupsafe import Markup, escape
 from bondcell.models import MODELS
 from bondcell.report.findings import Finding
 from bondcell.report.sections import Section, build_section
-from bondcell.wording import listed, model_name
+from bondcell.wording import SYMBOLS, listed, model_name
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
@@ -27,6 +27,8 @@ _SYMBOL = re.compile(
     r"(?<![\w/])([A-Za-zν])_(int|FE|[a-z]{1,2})(?![\w])|(?<=/)([A-Za-z])_([a-z])\b"
 )
 
+
+_POWER = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e(-?\d+)\b")
 
 _TIED = re.compile(r" (?=[%=≥])|(?<=[=≥]) ")
 """Blanks at which a line does not break: before a per cent sign, around an equals sign."""
@@ -63,38 +65,41 @@ def write_report(results: Path, scenes: Iterable[Scene], path: Path) -> None:
 
 
 def headlines(sections: Iterable[Section]) -> list[tuple[Section, Finding]]:
-    """Findings for the first screen: each section's best before any section's second best.
+    """Findings for the first screen: of each topic the one that comes first on the page.
 
     Parameters
     ----------
     sections
         The page's sections in order.
     """
-    queues = [
-        [(section, finding) for finding in section.findings if finding.key] for section in sections
+    chosen = [
+        (section, finding) for section in sections for finding in section.findings if finding.key
     ]
-    chosen: list[tuple[Section, Finding]] = []
-    for rank in range(max(map(len, queues), default=0)):
-        chosen += [queue[rank] for queue in queues if rank < len(queue)]
-    fresh = {finding.text: (section, finding) for section, finding in reversed(chosen)}
-    return list(reversed(fresh.values()))[:HEADLINES]
+    first = {finding.topic: (section, finding) for section, finding in reversed(chosen)}
+    return [pair for pair in chosen if pair in first.values()][:HEADLINES]
 
 
 def with_subscripts(text: str) -> Markup:
-    """Set the symbols in a text with italics and subscripts.
+    """Set the symbols in a text with italics and subscripts, its numbers with powers of ten.
 
     Examples
     --------
     >>> str(with_subscripts("E_i/E_m < 12"))
     '<i>E</i><sub>i</sub>/<i>E</i><sub>m</sub> &lt; 12'
+    >>> str(with_subscripts("4.9e-7, 1e6"))
+    '4.9·10<sup>−7</sup>, 10<sup>6</sup>'
     """
 
     def symbol(match: re.Match[str]) -> str:
         head, sub = match[1] or match[3], match[2] or match[4]
         return f"<i>{head}</i><sub>{sub}</sub>"
 
+    def power(match: re.Match[str]) -> str:
+        mantissa = "" if match[1] == "1" else f"{match[1]}·"
+        return f"{mantissa}10<sup>{match[2].replace('-', '−')}</sup>"
+
     unbroken = _TIED.sub("\u00a0", text)
-    return Markup(_SYMBOL.sub(symbol, str(escape(unbroken))))
+    return Markup(_POWER.sub(power, _SYMBOL.sub(symbol, str(escape(unbroken)))))
 
 
 def _environment() -> Environment:
@@ -116,14 +121,21 @@ def _models(sections: Iterable[Section]) -> list[dict[str, str]]:
     return [
         {
             "name": model_name(name),
-            "title": MODELS[name].title,
-            "summary": MODELS[name].summary,
-            "valid": MODELS[name].valid_range,
+            "summary": _INPUT.sub(_input_symbol, MODELS[name].summary),
+            "valid": _INPUT.sub(_input_symbol, MODELS[name].valid_range),
             "source": MODELS[name].source,
         }
         for name in names
         if name in MODELS
     ]
+
+
+_INPUT = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
+"""Names of inputs, which only those who use the package know."""
+
+
+def _input_symbol(match: re.Match[str]) -> str:
+    return SYMBOLS[match[1]]
 
 
 def _provenance(sections: Iterable[Section]) -> list[dict[str, Any]]:

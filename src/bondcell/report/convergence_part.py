@@ -69,13 +69,15 @@ def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
     if not order.empty:
         text += f", at an observed order of {number(order.median(), 2)} in h"
     same = structured[structured["error"] <= last["error"]]
-    if same.empty:
-        yield Finding(f"{text}.")
-        return
-    factor = last["seconds"] / same.iloc[0]["seconds"]
-    text += f". As accurate, the structured mesh takes {_cost(same.iloc[0])}."
-    key = f"{number(factor, 2)} times"
-    yield Finding(text, key, f"faster than triangles, as accurate, {case_name(case)}")
+    if not same.empty:
+        factor = last["seconds"] / same.iloc[0]["seconds"]
+        text += f". Just as accurate, the structured mesh takes {_cost(same.iloc[0])}"
+        if factor > 1:
+            text += f", {number(factor, 2)} times less"
+    first = structured.iloc[0] if cheap.empty else cheap.iloc[0]
+    key = f"{number(max(first['error'], TARGET), 2)} in {quantity(first['seconds'], 's', 2)}"
+    label = f"error and time of finite elements, {case_name(case)}"
+    yield Finding(f"{text}.", key, label, topic="cost")
 
 
 def _models(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
@@ -84,9 +86,10 @@ def _models(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
     if models.empty:
         return
     best = models.loc[models["error"].idxmin()]
-    text = f"{case_name(case).capitalize()}: {_model(best)} is the closest analytic model"
-    if (models["method"] == "fsi").any() and best["method"] != "fsi":
-        text += f"; {_model(models[models['method'] == 'fsi'].iloc[0])}"
+    text = f"Case {case_name(case)}: the closest analytic model is {_model(best)}"
+    fsi = models[models["method"] == "fsi"]
+    if best["method"] != "fsi" and not fsi.empty:
+        text += f"; {_model(fsi.iloc[0])}"
     yield Finding(f"{text}.")
 
 
@@ -107,7 +110,7 @@ def _cost(row: Any) -> str:
 
 def _model(row: Any) -> str:
     return (
-        f"{model_phrase(row['method'])} is off by {percent(row['error'])} "
+        f"{model_phrase(row['method'])}, off by {percent(row['error'])} "
         f"in {quantity(row['seconds'], 's', 2)} a point"
     )
 

@@ -11,9 +11,10 @@ import xarray as xr
 from bondcell.accuracy import accuracy_table
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
-from bondcell.report.findings import Finding, sweep_findings
+from bondcell.report.findings import Finding
 from bondcell.report.setup_table import Line, setup_lines
-from bondcell.report.tables import Table, accuracy_lines, value_lines
+from bondcell.report.sweep_findings import sweep_findings
+from bondcell.report.tables import Table, accuracy_lines, influence_lines, value_lines
 from bondcell.result_view import model_names
 from bondcell.storage import read_dataset
 
@@ -67,7 +68,7 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         ladders = read_dataset(folder / "study.nc", group="convergence")
     table = accuracy_table(study)
     findings = sweep_findings(study, table)
-    tables = [accuracy_lines(study, table), value_lines(study)]
+    tables = [accuracy_lines(study, table), influence_lines(study), value_lines(study)]
     if ladders is not None:
         findings = [*convergence_findings(ladders), *findings]
         tables = [*convergence_lines(ladders), *tables]
@@ -81,7 +82,7 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         tables=[table for table in tables if table is not None],
         links=_links(folder),
         models=model_names(study),
-        provenance=_provenance(study, folder),
+        provenance=_provenance(study),
     )
 
 
@@ -93,6 +94,6 @@ def _links(folder: Path) -> list[Link]:
     ]
 
 
-def _provenance(study: xr.Dataset, folder: Path) -> dict[str, str]:
+def _provenance(study: xr.Dataset) -> dict[str, str]:
     known = ("source", "source_revision", "versions", "machine", "cores", "platform")
     return {name: str(study.attrs[name]) for name in known if name in study.attrs}

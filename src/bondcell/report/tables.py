@@ -9,6 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.figures.layout import line_layout
+from bondcell.particle_influence import RATIO_AXIS, particles_negligible_from
 from bondcell.result_view import (
     axis_unit,
     axis_values,
@@ -22,6 +23,7 @@ from bondcell.wording import (
     at,
     meaning,
     model_name,
+    number,
     percent,
     quantity,
     symbol,
@@ -85,10 +87,45 @@ def accuracy_lines(study: xr.Dataset, table: pd.DataFrame) -> Table | None:
     if not axes:
         header, lines = _without(header, lines, ("points", "largest at", "lowest error"))
     return Table(
-        "Error of each model against finite elements, K / K_FE − 1: below zero is too soft.",
+        "Error of each model against finite elements, K_n / K_FE − 1: below zero is too soft.",
         header,
         lines,
         names=2 if axes else 1,
+    )
+
+
+def influence_lines(study: xr.Dataset) -> Table | None:
+    """Ratios from which the particles do not matter, or None when the sweep does not show them.
+
+    Parameters
+    ----------
+    study
+        A sweep's result.
+    """
+    found = particles_negligible_from(study)
+    axes = [axis for axis in swept_axes(study) if axis != RATIO_AXIS]
+    if found["ratio_from"].isna().all() or not 1 <= len(axes) <= 2:
+        return None
+    down, *across = sorted(axes, key=lambda axis: -study.sizes[axis])
+    pivot = found.pivot_table(
+        index=down, columns=["method", *across], values="ratio_from", dropna=False, sort=False
+    )
+    header = [symbol(down)]
+    for column in pivot.columns:
+        method, *values = column if isinstance(column, tuple) else (column,)
+        words = [
+            at(axis, v, axis_unit(study, axis)) for axis, v in zip(across, values, strict=True)
+        ]
+        header.append(", ".join([model_name(method), *words]))
+    lines = [
+        [quantity(value, axis_unit(study, down)), *(number(ratio, 2) for ratio in row)]
+        for value, row in zip(pivot.index, pivot.to_numpy(), strict=True)
+    ]
+    return Table(
+        f"Modulus ratio {symbol(RATIO_AXIS)} from which K_n is within 1 % of what the interface "
+        "alone gives: k_int for FSI, rigid particles for finite elements.",
+        header,
+        lines,
     )
 
 
