@@ -67,9 +67,46 @@ def make_study(axes: dict[str, np.ndarray], models: tuple[str, ...] = MODELS) ->
     return data
 
 
+def make_convergence(cases: tuple[str, ...] = ("base", "narrow_gap")) -> xr.Dataset:
+    """Two ladders and two models on each case: orders p fall by e^-3 each, triangles as h^4."""
+    order, size = np.arange(2.0, 8.0), np.array([1.0, 0.5, 0.25])
+    shape = (len(cases), 2, order.size)
+    data = {name: np.full(shape, np.nan) for name in ("refinement", "error", "order", "seconds")}
+    data["refinement"][:, 0], data["refinement"][:, 1, :3] = order, size
+    data["error"][:, 0], data["error"][:, 1, :3] = np.exp(-3 * order), 1e-3 * size**4
+    data["order"][:, 0, 1:], data["order"][:, 1, 1:3] = 3.0, 4.0
+    data["seconds"][:, 0], data["seconds"][:, 1, :3] = 1e-2 * order**2, 0.2 / size**2
+    data["stiffness"] = 1.6e5 * (1 + data["error"])
+    data["error"][:, 0, -1] = np.nan  # the finest level is the reference itself
+    for stage in ("mesh", "assembly", "solve"):
+        data[f"seconds_{stage}"] = data["seconds"] / 3
+    whole = {"dof": np.zeros(shape, int), "elements": np.full(shape, 20)}
+    whole["dof"][:, 0] = 24 * order**2
+    whole["dof"][:, 1, :3] = 1500 / size**2
+    whole["status"] = np.zeros(shape, np.int8)
+    dims = ("case", "method", "level")
+    study = xr.Dataset({name: (dims, values) for name, values in (data | whole).items()})
+    for name, values in {
+        "stiffness": [8.4e4, 4.9e5],
+        "error": [0.48, 2.0],
+        "seconds": [1e-7, 5e-8],
+        "status": [0, 0],
+    }.items():
+        study[f"model_{name}"] = ("model", np.array(values))
+        study[f"model_{name}"] = study[f"model_{name}"].expand_dims(case=len(cases))
+    study["bc"] = ("case", ["roller"] * len(cases))
+    study["reference_error"] = ("case", [1e-9] * len(cases))
+    return study.assign_coords(
+        case=list(cases),
+        method=["structured", "triangles"],
+        level=np.arange(order.size),
+        model=["fsi", "slices"],
+    )
+
+
 @pytest.fixture(scope="session")
 def synthetic() -> SimpleNamespace:
-    """Synthetic results: ``figure4``, ``maps``, ``point`` and the maker itself."""
+    """Synthetic results: ``figure4``, ``maps``, ``point``, ``convergence``, the maker itself."""
     ratio = np.geomspace(1, 1e6, 25)
     return SimpleNamespace(
         make=make_study,
@@ -79,7 +116,9 @@ def synthetic() -> SimpleNamespace:
                 "gap_ratio": np.geomspace(1e-3, 1, 7),
                 "modulus_ratio": np.geomspace(1, 1e6, 7),
                 "poisson_m": np.array([0.0, 0.25, 0.46]),
-            }
+            },
+            models=("fsi", "cementation", "fe"),
         ),
         point=make_study({}),
+        convergence=make_convergence(),
     )

@@ -10,7 +10,7 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
-from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullLocator
@@ -106,7 +106,7 @@ def _draw_map(
     study: xr.Dataset,
     layout: Layout,
     shown: _Map,
-    scale: tuple[ListedColormap, BoundaryNorm],
+    scale: tuple[Colormap, BoundaryNorm],
 ) -> None:
     x, y = axis_values(study, layout.x), axis_values(study, layout.y or "")
     colours, norm = scale
@@ -136,17 +136,17 @@ def _edges(values: Grid) -> Grid:
     return np.exp(edges) if logarithmic else edges
 
 
-def _colours() -> tuple[ListedColormap, BoundaryNorm]:
+def _colours() -> tuple[Colormap, BoundaryNorm]:
     """Orange is too soft, purple too stiff, white within one per cent; the classes mirror."""
     half = (len(BOUNDS) - 1) // 2
     soft = colormaps["PuOr"](np.linspace(0.08, 0.40, half))
     stiff = colormaps["PuOr"](np.linspace(0.60, 0.92, half))
-    colours = ListedColormap(np.vstack([soft, [[1, 1, 1, 1]], stiff]), name="error")
-    colours.set_extremes(over="#14001f", bad=(0, 0, 0, 0))
+    classes = ListedColormap(np.vstack([soft, [[1, 1, 1, 1]], stiff]), name="error")
+    colours = classes.with_extremes(over="#14001f", bad=(0, 0, 0, 0))
     return colours, BoundaryNorm(list(BOUNDS), colours.N)
 
 
-def _colour_bar(figure: Figure, grid: Grid, colours: ListedColormap, norm: BoundaryNorm) -> None:
+def _colour_bar(figure: Figure, grid: Grid, colours: Colormap, norm: BoundaryNorm) -> None:
     bar = figure.colorbar(
         ScalarMappable(norm, colours),
         ax=grid,

@@ -155,6 +155,7 @@ def save(drawing: Drawing, folder: Path) -> list[Path]:
     list of pathlib.Path
         The two files. The same data gives the same bytes.
     """
+    _settle(drawing.figure)
     words = {"Title": drawing.caption, "Description": drawing.description}
     paths = []
     for suffix, extra in (("svg", {"Date": None, "Creator": None}), ("png", {"Software": None})):
@@ -163,3 +164,11 @@ def save(drawing: Drawing, folder: Path) -> list[Path]:
             drawing.figure.savefig(temporary, format=suffix, metadata=words | extra)
         paths.append(path)
     return paths
+
+
+def _settle(figure: Figure) -> None:
+    """Fix the layout, which is most of the time of a drawing: it need not be found for each file."""
+    engine = figure.get_layout_engine()
+    if engine is not None:
+        engine.execute(figure)
+        figure.set_layout_engine("none")
