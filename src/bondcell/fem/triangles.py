@@ -97,6 +97,9 @@ def solve_level(cell: Cell, size: float, bc: str = "roller", *, symmetry: bool =
     ``K = 2 U / d^2 = l.A.(l + w)``. A rigid motion strains no particle, so ``A l = A_m l``: the
     particles' large numbers never meet the matrix's small ones in a difference.
 
+    A whole number of layers fits into the film between the spheres, so where the film governs
+    (narrow gap, nu_m near 1/2) the error falls in steps: read an order off sizes below 1/2.
+
     Examples
     --------
     >>> cell = Cell.from_values(
