@@ -16,6 +16,9 @@ RATIO_AXIS = "modulus_ratio"
 PAPER_RATIO = 12.0
 """E_i/E_b above which the paper says that the particles no longer matter (its section 4)."""
 
+WIDEST_STEP = 10.01
+"""Between swept ratios farther apart than this factor nothing is interpolated."""
+
 MARGIN = 10.0
 """The finite element limit counts as reached this many times above the ratio that is looked for."""
 
@@ -79,7 +82,8 @@ def negligible_from(ratio: FloatArray, deviation: FloatArray, tolerance: float) 
     ratio
         Rising modulus ratios, shape (n,).
     deviation
-        Relative deviations from the interface-only stiffness, shape (n,); NaN is skipped.
+        Relative deviations from the interface-only stiffness, shape (n,); NaN and zero (where the
+        stiffness is itself taken for the limit) are skipped.
     tolerance
         The bound.
 
@@ -89,7 +93,7 @@ def negligible_from(ratio: FloatArray, deviation: FloatArray, tolerance: float) 
     >>> round(negligible_from(ratio, 2.5 / ratio, 0.01), 6)
     250.0
     """
-    known = np.isfinite(deviation)
+    known = np.isfinite(deviation) & (deviation != 0)  # zero only where it is the limit itself
     ratio, size = ratio[known], np.abs(deviation[known])
     above = np.flatnonzero(size > tolerance)
     if not size.size or size[-1] > tolerance:
@@ -97,7 +101,9 @@ def negligible_from(ratio: FloatArray, deviation: FloatArray, tolerance: float) 
     if not above.size:
         return float(ratio[0])
     last = int(above[-1])
-    high, low = np.log(size[last]), np.log(max(size[last + 1], np.finfo(float).tiny))
+    if ratio[last + 1] / ratio[last] > WIDEST_STEP:
+        return float("nan")
+    high, low = np.log(size[last]), np.log(size[last + 1])
     share = (high - np.log(tolerance)) / (high - low)
     step = np.log(ratio[last + 1] / ratio[last])
     return float(ratio[last] * np.exp(share * step))

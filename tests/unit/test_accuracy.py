@@ -140,8 +140,14 @@ def test_no_modulus_axis_no_answer(synthetic):
 
 def test_negligible_from_edges():
     ratio = np.array([1.0, 10.0, 100.0])
-    assert negligible_from(ratio, np.array([0.001, 0.0, 0.0]), 0.01) == 1.0
+    assert negligible_from(ratio, np.array([0.001, 1e-4, 0.0]), 0.01) == 1.0
     assert np.isnan(negligible_from(ratio, np.array([1.0, 0.5, 0.1]), 0.01))
     assert np.isnan(negligible_from(ratio, np.full(3, np.nan), 0.01))
     back = np.array([0.001, 0.1, 0.001])
     assert negligible_from(ratio, back, 0.01) == pytest.approx(10**1.5)
+
+
+def test_two_ratios_far_apart_show_nothing():
+    """Neither across decades nor to the point that is itself the limit is anything interpolated."""
+    assert np.isnan(negligible_from(np.array([10.0, 1e4]), np.array([0.2, 2e-4]), 0.01))
+    assert np.isnan(negligible_from(np.array([10.0, 50.0]), np.array([0.2, 0.0]), 0.01))

@@ -206,7 +206,7 @@ def test_convergence_findings(synthetic):
     assert (
         "Case base (roller): the structured mesh reaches 1e-6 with 600 unknowns in 250 ms" in text
     )
-    assert "come within 3.9e-6 of it with 24000 unknowns in 3.2 s" in text
+    assert "come within 3.9e-6 of its finest level with 24000 unknowns in 3.2 s" in text
     assert "at an observed order of 4 in h" in text
     assert "FSI, off by 48 % in 100 ns a point" in text
 
