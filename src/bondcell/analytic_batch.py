@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from bondcell.batches import Batch, batch_dataset, cell_at
+from bondcell.batch_results import batch_dataset
+from bondcell.batches import Batch, cell_at
 from bondcell.cell import Cell
 from bondcell.evaluate import evaluate
 from bondcell.inputs import cell_from_study

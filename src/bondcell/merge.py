@@ -28,7 +28,8 @@ def merge(
         Inputs on the swept dimensions.
     batches
         Results on ``(model, point)`` with the points' positions in the raveled study, as
-        `bondcell.batches.batch_dataset` gives them; other variables on ``(point,)`` are springs.
+        `bondcell.batch_results.batch_dataset` gives them; what else is on ``(point,)`` are
+        springs.
     labels
         Name in the batches -> name in the result's dimension ``model``, in the wanted order.
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
-from bondcell.batches import REFERENCE, Batch, batch_dataset, cell_at
+from bondcell.batch_results import batch_dataset
+from bondcell.batches import REFERENCE, Batch, cell_at
 from bondcell.by_geometry import Progress, solve_points
 from bondcell.errors import InputError, Violation
 from bondcell.fem.reference import solve

@@ -15,7 +15,8 @@ def source_files(*modules: str) -> list[Path]:
 
     Read from the import statements at module level, so nothing is imported to find out. What a
     function imports when it is called is not followed: name that module too if the work calls it.
-    The file of a parent package counts only where it is itself imported from.
+    Subpackages on the way to a module count, as they are loaded with it; the package's own root
+    does not, since it only passes names on.
 
     Parameters
     ----------
@@ -32,7 +33,7 @@ def source_files(*modules: str) -> list[Path]:
     >>> [path.name for path in source_files("bondcell.storage")]
     ['errors.py', 'storage.py']
     """
-    return _closure(_path(module) for module in modules)
+    return _closure(_path(name) for module in modules for name in _with_parents(module))
 
 
 def script_sources(script: str | Path) -> list[Path]:
@@ -66,7 +67,8 @@ def _path(module: str) -> Path:
 @cache
 def _imported(path: Path) -> tuple[Path, ...]:
     tree = ast.parse(path.read_bytes(), filename=str(path))
-    return tuple(_path(name) for name in _imported_modules(tree) if _path(name).is_file())
+    names = [name for module in _imported_modules(tree) for name in _with_parents(module)]
+    return tuple(path for path in dict.fromkeys(map(_path, names)) if path.is_file())
 
 
 def _imported_modules(tree: ast.Module) -> Iterator[str]:
@@ -83,3 +85,9 @@ def _imported_modules(tree: ast.Module) -> Iterator[str]:
             yield from submodules
             if len(submodules) < len(names):
                 yield parent
+
+
+def _with_parents(module: str) -> Iterator[str]:
+    """A module and the subpackages it lies in."""
+    names = module.split(".")
+    yield from (".".join(names[:end]) for end in range(2, len(names) + 1))
