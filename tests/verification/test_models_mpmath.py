@@ -240,6 +240,17 @@ def test_general_with_a_given_core(ratio: float) -> None:
             assert abs(float(springs.stiffness[k] / truth - 1)) <= springs.relative_error
 
 
+@pytest.mark.parametrize("ratio", [0.5, 1 - 1e-6, 1 - 1e-12])
+def test_caps_of_a_core_nearly_as_wide_as_the_particle(ratio: float) -> None:
+    cell = Cell.from_values(
+        radius_i=1.0, gap=0.1, young_i=1.0, young_m=1.0, poisson_i=0.2, poisson_m=0.2
+    )
+    k_i = MODELS["general"].loads["normal"](cell, core_radius_ratio=ratio).parts["k_i"]
+    with mp.workdps(DIGITS):
+        truth = 2 * mp.pi * (1 - mp.sqrt(1 - mpf(ratio) ** 2))
+        assert abs(float(mpf(float(k_i)) / truth - 1)) <= 1e-15
+
+
 def test_parts_of_general_are_accurate_one_by_one() -> None:
     cell = cells(np.random.default_rng(23), 100)
     parts = MODELS["general"].loads["normal"](cell).parts

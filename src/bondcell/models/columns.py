@@ -82,23 +82,25 @@ class Columns:
         ndarray
             On the broadcast shape of all fields; times ``2 pi E_m`` it is a stiffness.
         """
-        if not np.any(self.ledge):
-            return equal_spheres(self)
-        unequal = self.ledge > 0.0
+        equal = self.ledge == 0.0
         stiffer = self.softness_large + self.softness_small <= 2.0
-        if unequal.all() and stiffer.all():
-            return stiffer_particles(self)
+        alike = stiffer & (self.softness_large == self.softness_small)
+        if equal.all():
+            return equal_spheres(self)
+        if alike.all() and not equal.any():
+            return alike_particles(self)
         shape = np.broadcast_shapes(*(getattr(self, f.name).shape for f in fields(self)))
         spread = Columns(*(np.broadcast_to(getattr(self, f.name), shape) for f in fields(self)))
-        unequal, stiffer = np.broadcast_to(unequal, shape), np.broadcast_to(stiffer, shape)
         result = np.empty(shape)
         for mask, formula in (
-            (~unequal, equal_spheres),
-            (unequal & stiffer, stiffer_particles),
-            (unequal & ~stiffer, softer_particles),
+            (equal, equal_spheres),
+            (~equal & alike, alike_particles),
+            (~equal & stiffer & ~alike, stiffer_particles),
+            (~equal & ~stiffer, softer_particles),
         ):
-            if mask.any():
-                result[mask] = formula(spread._take(mask))
+            chosen = np.broadcast_to(mask, shape)
+            if chosen.any():
+                result[chosen] = formula(spread._take(chosen))
         return result
 
     def _take(self, mask: NDArray[np.bool_]) -> Columns:
@@ -121,18 +123,48 @@ def equal_spheres(columns: Columns) -> FloatArray:
     return columns.large**2 / length * second_remainder(y, complement)
 
 
+def alike_particles(columns: Columns) -> FloatArray:
+    """Integral for unequal spheres of one material, no softer than the matrix, rigid ones included.
+
+    Notes
+    -----
+    As `stiffer_particles` with a = b, where t_2 = 0 and all logarithms are of two arguments:
+    ``y = a/lam`` and ``rho y``. The remainders take the cancelling powers of y out of them.
+    """
+    total = columns.large + columns.small
+    gap, rho = columns.gap / total, columns.ledge / total
+    lam = 1.0 + gap
+    below_rho = columns.small * (1.0 + columns.small / (columns.large + columns.ledge)) / total
+    y = (1.0 - columns.softness_large) / lam
+    one_less_y = (gap + columns.softness_large) / lam
+    one_less_y_rho = (gap + below_rho + columns.softness_large * rho) / lam
+
+    delta = rho * rho
+    tail = (
+        columns.small / total
+        + rho * y * below_rho
+        + delta * y * y * np.log(one_less_y_rho / (rho * one_less_y))
+    )
+    crossing = second_remainder(y, one_less_y) + 3.0 * delta * second_remainder(
+        y * rho, one_less_y_rho
+    )
+    return total / (4.0 * lam) * (crossing - delta * tail)
+
+
 def stiffer_particles(columns: Columns) -> FloatArray:
     """Integral for unequal spheres that are on average no softer than the matrix.
 
     Notes
     -----
-    Lengths in units of S = s_b + s_s; ``lam = L/S``, ``rho = A/S``, ``a = 1 - E_m/E_b``, ``b = 1
-    - E_m/E_s``. Where both spheres are crossed, t = (h_b + h_s)/S gives ``h_b - h_s = rho^2/t``
-    and the integral (1/4) of ``(t^2 - rho^4/t^2) / Q(t) dt`` from rho to 1, ``Q = lam t - p t^2 -
-    (a - b) rho^2/2``, ``p = (a + b)/2``. Its roots 1/x and t_2, with ``Delta^2 = lam^2 - (a^2 -
-    b^2) rho^2``, split it into ``1/Q = (x/(1 - x t) + 1/(t - t_2))/Delta``. For p >= 0 both parts
-    are positive, and each has a closed form in the remainders phi and chi. The lines that cross
-    the larger sphere only give ``(rho^2/lam) phi(a rho/lam)``.
+    Lengths in units of S = s_b + s_s: ``lam = L/S``, ``rho = A/S``; ``a = 1 - E_m/E_b``,
+    ``b = 1 - E_m/E_s``. Where a line crosses both spheres, ``t = (h_b + h_s)/S`` gives
+    ``h_b - h_s = rho^2/t`` and the integral from rho to 1
+
+    ``(1/4) integral of (t^2 - rho^4/t^2) / Q(t) dt``, ``Q = lam t - p t^2 - (a - b) rho^2/2``,
+
+    ``p = (a + b)/2``. The roots 1/x and t_2 of Q, with ``Delta^2 = lam^2 - (a^2 - b^2) rho^2``,
+    split it by ``1/Q = (x/(1 - x t) + 1/(t - t_2))/Delta``. For p >= 0 both parts are positive, and
+    each has a closed form in the remainders phi and chi.
     """
     total = columns.large + columns.small
     gap, rho = columns.gap / total, columns.ledge / total
@@ -147,13 +179,11 @@ def stiffer_particles(columns: Columns) -> FloatArray:
     x = (2.0 - soft_large - soft_small) / root
     t_2 = (soft_small - soft_large) * rho * rho / root
 
-    # Q(1) and Q(rho) are sums of positive terms: they give the distances of the roots from the
-    # ends.
-    rho_less_t_2 = 2.0 * rho * at_rim / (root * (1.0 - x * rho))
-    one_less_x = 2.0 * on_axis / (root * (below_rho + rho_less_t_2))
-    one_less_x_rho = below_rho + rho * one_less_x
+    # Q(1) and Q(rho) are sums of positive terms and give the roots' distances from both ends.
+    one_less_x_rho = 1.0 - x * rho
     rho_less_t_2 = 2.0 * rho * at_rim / (root * one_less_x_rho)
     one_less_t_2 = below_rho + rho_less_t_2
+    one_less_x = 2.0 * on_axis / (root * one_less_t_2)
 
     delta = rho * rho
     outer = x * (
