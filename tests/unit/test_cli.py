@@ -226,6 +226,15 @@ def test_show_a_single_point(synthetic, tmp_path, capsys):
     assert (tmp_path / "bars.svg").stat().st_size > 1000
 
 
+def test_show_a_convergence_study(synthetic, tmp_path, capsys):
+    groups = {"convergence": synthetic.convergence}
+    path = write_dataset(synthetic.point.sel(model=["fsi"]), tmp_path / "study.nc", groups)
+    assert main(["show", str(path)]) == 0
+    out = capsys.readouterr().out
+    assert re.search(r"base +structured +6 +0.0025 to 1.5e-8 +864 +360 ms", out)
+    assert re.search(r"base +fsi +1 +0.48 +- +100 ns", out)
+
+
 def test_plot_on_request(result, tmp_path, capsys):
     out = tmp_path / "out.png"
     assert main(["show", result, "--plot", str(out), "--x", "poisson_m"]) == 0

@@ -14,6 +14,7 @@ from bondcell.report.convergence_part import convergence_findings
 from bondcell.report.sections import build_section
 from bondcell.report.sweep_findings import sweep_findings
 from bondcell.scene import parse_scene
+from bondcell.status import Status
 from bondcell.storage import write_dataset
 
 CELL = {"radius_i": "7.5 mm", "gap": "0.5 mm", "young_i": "30 GPa", "poisson_i": 0.25}
@@ -191,6 +192,17 @@ def test_particles_and_losses(synthetic):
     assert "by finite elements from E_i/E_m = 260 (ν_m = 0) and 490 (ν_m = 0.46) on" in text
     assert "there K_n is still 17 % (FSI) and 18 % to 29 % (finite elements) below" in text
     assert "cementation at 25 (diverges)" in text
+
+
+def test_what_lies_outside_a_range_or_a_tolerance_is_told(synthetic):
+    assert "outside" not in said(synthetic.figure4)
+    assert "are sure to 1e-7 (relative" in said(synthetic.figure4)
+    study = synthetic.figure4.copy(deep=True)
+    study["status"].loc[{"model": "slices", "poisson_m": 0.46}] = Status.outside_valid_range
+    study["status"].loc[{"model": "fe", "modulus_ratio": 1}] = Status.tolerance_not_met
+    text = said(study)
+    assert "The slices model is outside its stated range at 25 of 50 points; inside, its" in text
+    assert "At 2 points they miss the tolerance" in text
 
 
 def test_nothing_is_said_of_nothing(synthetic):

@@ -44,8 +44,7 @@ def run(arguments: argparse.Namespace) -> int:
     _check_plot(study, arguments)
     print(_overview(study, arguments.file))
     if ladders is not None:
-        sizes = ", ".join(f"{name} {size}" for name, size in ladders.sizes.items())
-        print(f"\nconvergence study (group convergence): {sizes}")
+        print(f"\nconvergence study, errors against the finest level\n{_ladders(ladders)}")
     if arguments.plot:
         _draw(study, arguments)
     return 0
@@ -184,6 +183,26 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
         )
     header = ["model", "against", "max |error|", "median", "worst at", "points", "left out"]
     return text_table(rows, header)
+
+
+def _ladders(convergence: xr.Dataset) -> str:
+    """Coarsest and finest error of each discretisation, and the error of each analytic model."""
+    from bondcell.cli.text_table import text_table
+    from bondcell.convergence import convergence_table
+    from bondcell.wording import number, quantity
+
+    rows = []
+    table = convergence_table(convergence)
+    for (case, method), levels in table.groupby(["case", "method"], sort=False):
+        known = levels[levels["error"].notna()]
+        if known.empty:
+            continue
+        last = known.iloc[-1]
+        errors = dict.fromkeys(number(error, 2) for error in known["error"].iloc[[0, -1]])
+        unknowns = str(last["dof"]).replace("<NA>", "-")
+        time = quantity(last["seconds"], "s", 2)
+        rows.append([str(case), str(method), f"{len(levels)}", " to ".join(errors), unknowns, time])
+    return text_table(rows, ["case", "method", "levels", "error", "unknowns", "time"])
 
 
 def _convergence(path: str) -> xr.Dataset | None:

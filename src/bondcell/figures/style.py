@@ -167,7 +167,7 @@ def save(drawing: Drawing, folder: Path) -> list[Path]:
 
 
 def _settle(figure: Figure) -> None:
-    """Fix the layout, which is most of the time of a drawing: it need not be found for each file."""
+    """Find the layout once for all files: it is most of the time of a drawing."""
     engine = figure.get_layout_engine()
     if engine is not None:
         engine.execute(figure)

@@ -125,3 +125,17 @@ def lower_bound(table: pd.DataFrame) -> Iterator[Finding]:
                 "violation of a lower bound",
                 topic="lower bound",
             )
+
+
+def outside_range(table: pd.DataFrame) -> Iterator[Finding]:
+    """Models that claim nothing at some points, and how they do at the others."""
+    rows = table[(table["group_axis"] == "all") & (table["points_outside"] > 0)]
+    for _, row in rows.iterrows():
+        inside = row["points"] - row["points_outside"]
+        text = (
+            f"{model_phrase(row['model'])} is outside its stated range at {row['points_outside']} "
+            f"of {row['points']} points"
+        )
+        if inside:
+            text += f"; inside, its largest error is {percent(row['abs_error_max_inside'])}"
+        yield Finding(f"{text[0].upper()}{text[1:]}.")

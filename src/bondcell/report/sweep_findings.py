@@ -10,7 +10,13 @@ import xarray as xr
 
 from bondcell.particle_influence import PAPER_RATIO, RATIO_AXIS, particles_negligible_from
 from bondcell.report.findings import Finding
-from bondcell.report.model_findings import POISSON, lower_bound, ranking, series_model
+from bondcell.report.model_findings import (
+    POISSON,
+    lower_bound,
+    outside_range,
+    ranking,
+    series_model,
+)
 from bondcell.result_view import analytic_names, model_names, reference_names, swept_axes
 from bondcell.status import Status
 from bondcell.wording import at, listed, model_name, number, percent, quantity, symbol
@@ -37,6 +43,7 @@ def sweep_findings(study: xr.Dataset, table: pd.DataFrame) -> list[Finding]:
     found += particles(study)
     if not table.empty:
         found += ranking(study, table)
+        found += outside_range(table)
         found += lower_bound(table)
         found += reference_quality(study, table)
     return [*found, *without_value(study), *speed(study)]
@@ -93,13 +100,18 @@ def reference_quality(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Findin
     for name in reference_names(study):
         rows = table[(table["reference"] == name) & (table["group_axis"] == "all")]
         error = rows["reference_error"].max()
-        if error == error:
-            yield Finding(
-                f"The values of {model_name(name)} are sure to {number(error, 2)} (relative, the "
-                f"largest estimate over all points), far finer than the differences above."
-                if error < 1e-3
-                else f"The values of {model_name(name)} are sure only to {percent(error)}."
-            )
+        if np.isnan(error):
+            continue
+        text = f"The values of {model_name(name)} are sure to {number(error, 2)} (relative, the "
+        text += "largest estimate over all points)"
+        least = rows["abs_error_median"].min()
+        text += ", far finer than the differences above." if error < least / 100 else "."
+        missed = 0
+        if "status" in study:
+            missed = int((study["status"].sel(model=name) == Status.tolerance_not_met).sum())
+        if missed:
+            text += f" At {missed} points they miss the tolerance that was asked for."
+        yield Finding(text)
 
 
 def without_value(study: xr.Dataset) -> Iterator[Finding]:
