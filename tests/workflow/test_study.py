@@ -8,7 +8,7 @@ from bondcell.sources import script_sources
 from bondcell.storage import read_dataset
 
 HEAVY = {"gmsh", "skfem", "matplotlib", "jinja2"}
-LABELS = {"xarray", "pandas", "netCDF4"}
+LABELS = {"xarray", "netCDF4"}  # Snakemake loads pandas itself
 
 
 def packages(modules):

@@ -1,5 +1,6 @@
 # The jobs that compute. A scene's file is `ancient` because it may change without changing the
-# points: what matters is the digest in the parameters.
+# points: what matters is the digest in the parameters. Linear algebra runs on as many threads as a
+# job claims, which is one; two jobs at once use two cores.
 rule analytic:
     input:
         scene=ancient("params/{scene}.yaml"),
