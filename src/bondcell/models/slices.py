@@ -34,7 +34,7 @@ def normal(cell: Cell) -> Springs:
 
     Plane slices that do not contract are a kinematically admissible displacement: an upper bound of
     the cell if all Poisson's ratios are zero. Otherwise neighbouring slices hinder each other's
-    contraction, even with equal ratios, and K_n bounds nothing.
+    contraction, even with equal ratios, and no bound is proven.
 
     Examples
     --------
