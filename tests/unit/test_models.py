@@ -41,7 +41,7 @@ def cell_of(**changes: object) -> Cell:
 
 def for_all(*strategies: st.SearchStrategy[Any]) -> Callable[[Test], Test]:
     """A law checked at random examples; no deadline, since machines are shared."""
-    return lambda test: settings(max_examples=40, deadline=None)(given(*strategies)(test))
+    return lambda test: settings(max_examples=25, deadline=None)(given(*strategies)(test))
 
 
 def logs(low: float, high: float) -> st.SearchStrategy[float]:

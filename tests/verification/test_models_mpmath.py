@@ -213,7 +213,7 @@ def test_required_range_densely(model: str) -> None:
 
 
 def test_equal_spheres_on_a_full_grid() -> None:
-    gap, young_i, young_j = np.meshgrid(GAPS, MODULI, MODULI, indexing="ij")
+    gap, young_i, young_j = np.meshgrid(GAPS, MODULI[::2], MODULI[1::2], indexing="ij")
     cell = Cell.from_values(
         radius_i=1.0,
         gap=gap,
