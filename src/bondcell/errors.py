@@ -1,4 +1,4 @@
-"""Exceptions: every complaint about input names field, value and allowed range, all of them at once."""
+"""Exceptions: complaints about input name field, value and allowed range, all of them at once."""
 
 from __future__ import annotations
 
@@ -77,4 +77,4 @@ class DataError(InputError):
 
 
 class MissingLibrary(BondcellError):
-    """A system library that an optional step needs is absent; the message says how to install it."""
+    """A system library that an optional step needs is absent; the message says what to install."""

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 from skfem import Basis
 
@@ -17,6 +16,7 @@ from bondcell.fem.element_matrices import ElementMatrices, cell_basis, element_m
 from bondcell.fem.half_cell import MATRIX, PARTICLE_I, PARTICLE_J
 from bondcell.fem.substructure import Condensed, Substructure
 from bondcell.fem.supports import Motion, Supports
+from bondcell.fem.symmetric_solve import solve_symmetric
 
 
 @dataclass(frozen=True)
@@ -73,7 +73,9 @@ class CellOperators:
     With the displacement ``u = lift + w``, where the lift moves particle j as a rigid body, the
     stiffness is ``own - coupling^T X^-1 coupling`` with ``X`` the sum of the condensed parts: the
     matrix, and each particle times its shear modulus over the matrix's. The particles' energy never
-    meets the rigid motion, so round-off stays at the matrix's scale however stiff they are.
+    meets the rigid motion, so round-off stays at the matrix's scale however stiff they are. Where
+    particle i is softer than the matrix another lift does the same for the matrix: it follows
+    particle j, and all the strain is left to particle i.
     """
 
     def __init__(
@@ -82,7 +84,8 @@ class CellOperators:
         basis = cell_basis(mesh.topology, mesh.mapping(order), order)
         numbering = _Numbering(mesh, basis, len(supports.mode.components))
         held = numbering.marked(supports.held)
-        motions = _motions(mesh, numbering, order, supports, held)
+        rigid = _rigid_motions(mesh, numbering, order, supports)
+        lifts = _lifts(mesh, numbering, supports, held, rigid)
         matrices = element_matrices(basis, supports.mode, projected)
         self.elements = int(mesh.topology.nelements)
         self.dof = int(held.size - held.sum())
@@ -99,12 +102,14 @@ class CellOperators:
             rows = mesh.region == region
             own = ElementMatrices(matrices.shear[rows], matrices.bulk_root[rows])
             dofs = numbering.outer_dofs[rows]
+            both = np.tile(rigid, 2)
             return Substructure(
-                own, numbering.inner, numbering.outer, dofs, interface, held, moving
+                own, numbering.inner, numbering.outer, dofs, interface, held, moving, both
             )
 
-        self._matrix = part(MATRIX, np.concatenate(self._interfaces), motions)
-        still = np.zeros_like(motions)
+        self._matrix = part(MATRIX, np.concatenate(self._interfaces), lifts)
+        self._followed = rigid[self._interfaces[0]]
+        still = np.zeros_like(lifts)
         self._particles = [
             part(region, interface, still)
             for region, interface in zip(particles, self._interfaces, strict=True)
@@ -132,8 +137,12 @@ class CellOperators:
         system = np.zeros((size, size))
         own = np.arange(starts[-1] + extra)
         system[np.ix_(own, own)] = matrix.matrix
-        right = np.zeros((size, matrix.own.shape[0]))
-        right[own] = matrix.coupling
+        soft = materials.particles[0][0] < materials.shear_m
+        count = matrix.own.shape[0] // 2
+        lift = slice(count, 2 * count) if soft else slice(0, count)
+        right = np.zeros((size, count))
+        right[own] = matrix.coupling[:, lift]
+        constant = matrix.own[lift, lift].copy()
         free = np.ones(size, dtype=bool)
         for k in range(len(self._particles)):
             modulus, poisson = materials.particles[k]
@@ -142,12 +151,14 @@ class CellOperators:
             if np.isinf(modulus):
                 free[at] = False
                 continue
-            ratio = modulus / materials.shear_m
-            system[np.ix_(at, at)] += ratio * self.condensed(k + 1, poisson).matrix
-        answer = scipy.linalg.solve(
-            system[np.ix_(free, free)], right[free], assume_a="gen", check_finite=False
-        )
-        response = materials.shear_m * (matrix.own - right[free].T @ answer)
+            particle = modulus / materials.shear_m * self.condensed(k + 1, poisson).matrix
+            system[np.ix_(at, at)] += particle
+            if soft and k == 0:
+                pull = particle[:, : sizes[0]] @ self._followed
+                right[at] += pull
+                constant += self._followed.T @ pull[: sizes[0]]
+        answer = solve_symmetric(system[np.ix_(free, free)], right[free])
+        response = materials.shear_m * (constant - right[free].T @ answer)
         return np.asarray(response / 2 if self.is_half else response)
 
 
@@ -178,28 +189,41 @@ class _Numbering:
         return marked
 
 
-def _motions(
+def _rigid_motions(
+    mesh: CellMesh, numbering: _Numbering, order: int, supports: Supports
+) -> FloatArray:
+    """Coefficients of the unit motions of the whole cell, shape (unknowns, motions)."""
+    return np.stack(
+        [_interpolate(mesh, numbering, order, motion) for motion in supports.motions], axis=1
+    )
+
+
+def _lifts(
     mesh: CellMesh,
     numbering: _Numbering,
-    order: int,
     supports: Supports,
     held: NDArray[np.bool_],
+    rigid: FloatArray,
 ) -> FloatArray:
-    """Coefficients of the unit motions, shape (unknowns, motions).
+    """Motions that the displacement starts from: the stiff lifts, then the soft ones.
 
-    They follow the motion on the whole of particle j and in the prescribed components of the moved
-    boundaries, and vanish elsewhere.
+    Both follow the rigid motion on particle j and in the prescribed components of the moved
+    boundaries. The stiff lift vanishes elsewhere; the soft one goes on through the matrix up to
+    what is prescribed to be at rest.
     """
     moved = {name: supports.held[name] for name in supports.moved if name in mesh.boundary}
-    carried = numbering.marked(moved) & held
-    own = np.unique(numbering.scalar_dofs[mesh.region == PARTICLE_J])
-    for c in range(numbering.components):
-        carried[own + c * numbering.count] = True
-    columns = [
-        np.where(carried, _interpolate(mesh, numbering, order, motion), 0.0)
-        for motion in supports.motions
-    ]
-    return np.stack(columns, axis=1)
+    prescribed = numbering.marked(moved) & held
+
+    def on(chosen: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        scalar = np.unique(numbering.scalar_dofs[chosen])
+        marked = np.zeros_like(held)
+        for c in range(numbering.components):
+            marked[scalar + c * numbering.count] = True
+        return marked
+
+    stiff = prescribed | on(mesh.region == PARTICLE_J)
+    soft = stiff | (on(mesh.region != PARTICLE_I) & ~held)
+    return np.concatenate([np.where(lift[:, None], rigid, 0.0) for lift in (stiff, soft)], axis=1)
 
 
 def _interpolate(mesh: CellMesh, numbering: _Numbering, order: int, motion: Motion) -> FloatArray:

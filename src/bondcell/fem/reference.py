@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.fem.cell_mesh import Geometry, build_cell_mesh
+from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.cell_operators import Materials
 from bondcell.fem.structured import CellSolver, Load, find_load, split_cell
 from bondcell.fem.substructure import bulk_to_shear
@@ -17,6 +17,12 @@ from bondcell.status import Status
 
 ORDERS = (4, 6, 8, 10, 12, 14)
 """The ladder; a point climbs it until its estimate meets the tolerance."""
+
+LARGEST = 16_000
+"""Elements times order squared, a bound on unknowns and time: the ladder ends there."""
+
+SOFT_CUT, SMALLEST_CUT = 1e-2, 1e-6
+"""Where the cusp beside a soft particle is cut, over its modulus ratio, and the least [radii]."""
 
 ROUND_OFF = (1e-11, 1e-7)
 """Least and largest relative round-off of one solve; it grows with ``kappa/mu``."""
@@ -75,51 +81,107 @@ def solve(
         order=np.zeros(count, dtype=np.int64),
         seconds=np.zeros(count),
     )
-    mirrored = np.array([g.is_mirrored and m.is_mirrored for g, m in points])
-    blocked = np.array([(load, bc) == ("normal", "confined") and _is_rigid(m) for _, m in points])
-    answer.status[blocked] = Status.diverges
-    for half in (True, False):
-        chosen = np.flatnonzero((mirrored == half) & ~blocked)
-        if chosen.size:
-            materials = [points[k][1] for k in chosen]
-            _climb(points[0][0], half, materials, chosen, entry, tolerance, answer)
+    groups: dict[tuple[bool, Grading], list[int]] = {}
+    for k, (geometry, materials) in enumerate(points):
+        if (load, bc) == ("normal", "confined") and _is_rigid(materials):
+            answer.status[k] = Status.diverges
+            continue
+        half = geometry.is_mirrored and materials.is_mirrored
+        grading = _grading(entry.grading, geometry, materials)
+        groups.setdefault((half, grading), []).append(k)
+    for (half, grading), chosen in groups.items():
+        ladder = _Ladder(points[0][0], entry, half, grading)
+        ladder.climb([points[k][1] for k in chosen], tolerance)
+        ladder.report(np.array(chosen), tolerance, answer)
     return answer
 
 
-def _climb(
-    geometry: Geometry,
-    half: bool,
-    materials: list[Materials],
-    chosen: NDArray[np.int64],
-    load: Load,
-    tolerance: float,
-    answer: Reference,
-) -> None:
-    """Raise the order for the points still open, until their estimates are small enough."""
-    started = time.perf_counter()
-    mesh = build_cell_mesh(geometry, load.grading, half)
-    ladders: list[list[float]] = [[] for _ in materials]
-    still_open = list(range(len(materials)))
-    for order in ORDERS:
-        solver = CellSolver(geometry, load, half, order, mesh)
-        for k in still_open:
-            ladders[k].append(_stiffness(solver, materials[k]))
-        now = time.perf_counter()
-        answer.seconds[chosen[still_open]] += (now - started) / len(still_open)
-        started = now
-        answer.order[chosen[still_open]] = order
-        answer.dof[chosen[still_open]] = solver.dof
-        still_open = [k for k in still_open if not estimate(ladders[k], materials[k]) <= tolerance]
-        still_open = [k for k in still_open if np.isfinite(ladders[k][-1])]
-        if not still_open:
-            break
-    for k, ladder in enumerate(ladders):
-        at = chosen[k]
-        if np.isfinite(ladder[-1]):
-            answer.stiffness[at] = ladder[-1]
-            answer.error_estimate[at] = estimate(ladder, materials[k])
-            good = answer.error_estimate[at] <= tolerance
-            answer.status[at] = Status.ok if good else Status.tolerance_not_met
+def _grading(grading: Grading, geometry: Geometry, materials: Materials) -> Grading:
+    """Cut the cusp at the foot later where a soft particle lets the matrix beside it carry load.
+
+    What is cut off matters once the cusp is as stiff as the particle next to it, at a height in
+    proportion to the modulus ratio. Cuts come in decades, so that points share meshes.
+    """
+    ratios = [
+        shear / materials.shear_m
+        for radius, (shear, _) in zip(
+            (geometry.radius_i, geometry.radius_j), materials.particles, strict=True
+        )
+        if radius == geometry.cylinder_radius
+    ]
+    if not ratios or min(ratios) > 0.3:
+        return grading
+    wanted = 10.0 ** np.floor(np.log10(SOFT_CUT * min(ratios)))
+    return replace(grading, foot=min(grading.foot, max(wanted, SMALLEST_CUT)))
+
+
+class _Ladder:
+    """Points of one mesh on their way up the orders."""
+
+    def __init__(self, geometry: Geometry, load: Load, half: bool, grading: Grading) -> None:
+        self._geometry, self._load, self._half, self._grading = geometry, load, half, grading
+
+    def climb(self, materials: list[Materials], tolerance: float) -> None:
+        """Raise the order for the points still open, until their estimates are small enough."""
+        count = len(materials)
+        self._materials = materials
+        self._rungs: list[list[float]] = [[] for _ in materials]
+        self._order, self._dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
+        self._seconds = np.zeros(count)
+        started = time.perf_counter()
+        mesh = build_cell_mesh(self._geometry, self._grading, self._half)
+        still_open = list(range(count))
+        for order in ORDERS:
+            if not still_open or mesh.topology.nelements * order**2 > LARGEST:
+                break
+            solver = CellSolver(self._geometry, self._load, self._half, order, mesh)
+            for k in still_open:
+                self._rungs[k].append(_stiffness(solver, materials[k]))
+            now = time.perf_counter()
+            self._seconds[still_open] += (now - started) / len(still_open)
+            started = now
+            self._order[still_open], self._dof[still_open] = order, solver.dof
+            still_open = [
+                k
+                for k in still_open
+                if np.isfinite(self._rungs[k][-1]) and not self._estimate(k) <= tolerance
+            ]
+
+    def report(self, at: NDArray[np.int64], tolerance: float, answer: Reference) -> None:
+        """Write the points' results at positions ``at`` of the answer."""
+        answer.order[at], answer.dof[at], answer.seconds[at] = (
+            self._order,
+            self._dof,
+            self._seconds,
+        )
+        for k, point in enumerate(at):
+            rungs = self._rungs[k]
+            if len(rungs) < 2:
+                answer.status[point] = Status.limit_exceeded
+            elif np.isfinite(rungs[-1]) and rungs[-1] > 0:
+                answer.stiffness[point] = rungs[-1]
+                answer.error_estimate[point] = self._estimate(k)
+                good = answer.error_estimate[point] <= tolerance
+                answer.status[point] = Status.ok if good else Status.tolerance_not_met
+
+    def _estimate(self, k: int) -> float:
+        own = estimate(self._rungs[k], self._materials[k])
+        wanted = _grading(self._grading, self._geometry, self._materials[k]).foot
+        softest = min(shear for shear, _ in self._materials[k].particles)
+        # The cusp of a very soft particle cannot be followed to where it no longer matters.
+        if wanted <= SMALLEST_CUT and softest < 1e-2 * self._materials[k].shear_m:
+            return max(own, _unresolved_cusp(softest / self._materials[k].shear_m))
+        return own
+
+
+def _unresolved_cusp(ratio: float) -> float:
+    """Relative error that the shortest cut leaves at a particle's modulus over the matrix's.
+
+    The stiffness falls by about its tenth for each decade that the cut lies above the height where
+    the cusp stops to matter; below it the error shrinks with the square of the cut.
+    """
+    excess = SMALLEST_CUT / (SOFT_CUT * ratio)
+    return float(1e-7 * excess**2 if excess < 300 else 0.01 + 0.15 * np.log10(excess / 300))
 
 
 def _is_rigid(materials: Materials) -> bool:
@@ -138,14 +200,15 @@ def _stiffness(solver: CellSolver, materials: Materials) -> float:
 def estimate(ladder: list[float], materials: Materials) -> float:
     """Relative error of a ladder's last rung; infinite while there are fewer than two.
 
-    The last rung is closer to the limit than to the rung before, since the ladder converges
-    exponentially; so the last step bounds the error. A step that is small by chance, where the
-    sequence turns, is caught by the step before it, allowed to have shrunk a hundredfold at most.
+    The ladder converges exponentially, each rung about thirty times closer to the limit than the
+    one before, so half the last step bounds the error with room to spare. A step that is small by
+    chance, where the sequence turns, is caught by the step before it, allowed to have shrunk
+    fiftyfold at most.
     """
     if len(ladder) < 2:
         return np.inf
     steps = np.abs(np.diff(ladder)) / abs(ladder[-1])
-    last = max(steps[-1], steps[-2] / 100) if len(steps) > 1 else steps[-1]
+    last = max(steps[-1] / 2, steps[-2] / 50) if len(steps) > 1 else steps[-1]
     return float(max(last, _round_off(materials)))
 
 

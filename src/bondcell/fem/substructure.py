@@ -16,11 +16,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.element_matrices import ElementMatrices
+from bondcell.fem.symmetric_solve import solve_symmetric
 
 
 def bulk_to_shear(poisson: float) -> float:
@@ -61,6 +61,8 @@ class Substructure:
         Global unknowns that are prescribed, shape (all unknowns,), bool.
     motions
         Coefficients of the prescribed motions, zero where nothing moves, shape (all, motions).
+    rigid
+        The same motions of the whole cell as one rigid body, shape (all, motions).
     """
 
     matrices: ElementMatrices
@@ -70,6 +72,7 @@ class Substructure:
     interface: NDArray[np.int64]
     held: NDArray[np.bool_]
     motions: FloatArray
+    rigid: FloatArray
 
     def condense(self, poisson: float) -> Condensed:
         """Eliminate everything but the interface at one Poisson's ratio."""
@@ -99,7 +102,7 @@ class Substructure:
         pull = np.zeros((size, moves))
         own = np.zeros((moves, moves))
         moved = np.zeros((*numbers.shape, moves))
-        moved[:, : self.dofs.shape[1]] = self.motions[self.dofs]
+        moved[:, : self.dofs.shape[1]] = self._strained()
         for matrix, number, value in zip(element, numbers, moved, strict=True):
             free = number >= 0
             at = number[free]
@@ -110,13 +113,22 @@ class Substructure:
                 own += value.T @ force
         gone, stay = slice(kept, size), slice(0, kept)
         right = np.concatenate((total[gone, stay], pull[gone]), axis=1)
-        solved = scipy.linalg.solve(total[gone, gone], right, assume_a="gen", check_finite=False)
-        reduction = right.T @ solved
+        reduction = right.T @ solve_symmetric(total[gone, gone], right)
         return Condensed(
             matrix=total[stay, stay] - reduction[:kept, :kept],
             coupling=pull[stay] - reduction[:kept, kept:],
             own=own - reduction[kept:, kept:],
         )
+
+    def _strained(self) -> FloatArray:
+        """Motions of each element's skeleton, zero where an element moves as a rigid body.
+
+        What a rigid motion contributes is round-off, and would be all there is where the particles
+        are much softer than the matrix.
+        """
+        motions = self.motions[self.dofs]
+        rigid = (motions == self.rigid[self.dofs]).all(axis=1)
+        return np.where(rigid[:, None], 0.0, motions)
 
     def _numbering(self) -> tuple[NDArray[np.int64], int, int]:
         """Position of each element's skeleton unknowns (-1: prescribed), how many stay, how many.
