@@ -7,6 +7,9 @@ BIN := .venv/bin
 RUN := $(BIN)/python -m
 STAMP := .venv/installed
 CORES ?= all
+# Many small systems: threads inside a process only get into each other's way.
+export OMP_NUM_THREADS ?= 1
+export OPENBLAS_NUM_THREADS ?= 1
 # Rules may call the environment's commands by name.
 WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
 
