@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
-from bondcell.fem.cell_operators import Materials
+from bondcell.fem.materials import Materials
 from bondcell.fem.structured import CellSolver, Load, find_load, split_cell
 from bondcell.fem.substructure import bulk_to_shear
 from bondcell.status import Status

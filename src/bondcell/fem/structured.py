@@ -12,8 +12,9 @@ import numpy as np
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import UnsupportedLoad, Violation
 from bondcell.fem.cell_mesh import CellMesh, Geometry, Grading, build_cell_mesh
-from bondcell.fem.cell_operators import CellOperators, Materials
+from bondcell.fem.cell_operators import CellOperators
 from bondcell.fem.level import Level
+from bondcell.fem.materials import Materials
 from bondcell.fem.supports import (
     BEAM,
     BENDING_HALF,
