@@ -22,10 +22,7 @@ print(json.dumps([sys.modules[name].__file__ for name in names]))
     [
         "bondcell.storage",
         "bondcell.evaluate",
-        "bondcell.models",
         "bondcell.reference_batch",
-        "bondcell.collect",
-        "bondcell.figures",
         "bondcell.report",
     ],
 )
