@@ -13,6 +13,7 @@ from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
 from bondcell.fem.structured import CellSolver, Load, find_load, split_cell
 from bondcell.fem.substructure import bulk_to_shear
+from bondcell.fem.threads import one_thread
 from bondcell.status import Status
 
 ORDERS = (4, 6, 8, 10, 12, 14)
@@ -23,6 +24,9 @@ LARGEST = 16_000
 
 SOFT_CUT, SMALLEST_CUT = 1e-2, 1e-6
 """Where the cusp beside a soft particle is cut, over its modulus ratio, and the least [radii]."""
+
+REDUCTION = 20
+"""A reduced basis may add the tolerance over this."""
 
 ROUND_OFF = (1e-11, 1e-7)
 """Least and largest relative round-off of one solve; it grows with ``kappa/mu``."""
@@ -44,6 +48,10 @@ class Reference:
         Unknowns and polynomial order of the finest solve used.
     seconds
         Wall time a point; the operators' time is shared by the points that used them [s].
+    way
+        How the finest solve was done, see `sweep.Way`.
+    reduction_error
+        The part of ``error_estimate`` that bounds what a reduced basis added.
     """
 
     stiffness: FloatArray
@@ -52,8 +60,11 @@ class Reference:
     dof: NDArray[np.int64]
     order: NDArray[np.int64]
     seconds: FloatArray
+    way: NDArray[np.int8]
+    reduction_error: FloatArray
 
 
+@one_thread()
 def solve(
     cell: Cell, load: str = "normal", bc: str = "roller", tolerance: float = 1e-6
 ) -> Reference:
@@ -80,6 +91,8 @@ def solve(
         dof=np.zeros(count, dtype=np.int64),
         order=np.zeros(count, dtype=np.int64),
         seconds=np.zeros(count),
+        way=np.zeros(count, dtype=np.int8),
+        reduction_error=np.zeros(count),
     )
     groups: dict[tuple[bool, Grading], list[int]] = {}
     for k, (geometry, materials) in enumerate(points):
@@ -127,7 +140,8 @@ class _Ladder:
         self._materials = materials
         self._rungs: list[list[float]] = [[] for _ in materials]
         self._order, self._dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
-        self._seconds = np.zeros(count)
+        self._seconds, self._reduction = np.zeros(count), np.zeros(count)
+        self._way = np.zeros(count, dtype=np.int8)
         started = time.perf_counter()
         mesh = build_cell_mesh(self._geometry, self._grading, self._half)
         still_open = list(range(count))
@@ -135,8 +149,11 @@ class _Ladder:
             if not still_open or mesh.topology.nelements * order**2 > LARGEST:
                 break
             solver = CellSolver(self._geometry, self._load, self._half, order, mesh)
-            for k in still_open:
-                self._rungs[k].append(_stiffness(solver, materials[k]))
+            sweep = solver.sweep([materials[k] for k in still_open], tolerance / REDUCTION)
+            for k, stiffness in zip(still_open, sweep.stiffness, strict=True):
+                self._rungs[k].append(float(stiffness))
+            self._way[still_open] = sweep.way
+            self._reduction[still_open] = sweep.reduction_error / np.abs(sweep.stiffness)
             now = time.perf_counter()
             self._seconds[still_open] += (now - started) / len(still_open)
             started = now
@@ -154,6 +171,7 @@ class _Ladder:
             self._dof,
             self._seconds,
         )
+        answer.way[at], answer.reduction_error[at] = self._way, self._reduction
         for k, point in enumerate(at):
             rungs = self._rungs[k]
             if len(rungs) < 2:
@@ -165,7 +183,7 @@ class _Ladder:
                 answer.status[point] = Status.ok if good else Status.tolerance_not_met
 
     def _estimate(self, k: int) -> float:
-        own = estimate(self._rungs[k], self._materials[k])
+        own = estimate(self._rungs[k], self._materials[k]) + self._reduction[k]
         wanted = _grading(self._grading, self._geometry, self._materials[k]).foot
         softest = min(shear for shear, _ in self._materials[k].particles)
         # The cusp of a very soft particle cannot be followed to where it no longer matters.
@@ -188,13 +206,6 @@ def _is_rigid(materials: Materials) -> bool:
     """Whether nothing can give way once the sides are held: all parts rigid or incompressible."""
     rigid = np.isinf(materials.young_i) and np.isinf(materials.young_j)
     return bool(rigid and materials.poisson_m == 0.5)
-
-
-def _stiffness(solver: CellSolver, materials: Materials) -> float:
-    try:
-        return solver.stiffness(materials)
-    except np.linalg.LinAlgError:
-        return np.nan
 
 
 def estimate(ladder: list[float], materials: Materials) -> float:

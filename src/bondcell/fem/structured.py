@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import UnsupportedLoad, Violation
@@ -23,6 +24,11 @@ from bondcell.fem.supports import (
     TORSION,
     Supports,
 )
+from bondcell.fem.sweep import respond
+from bondcell.fem.threads import one_thread
+
+OFFSET = 1e-3
+"""Interpolation offset in compressibility over gap/R: thinner films are stiffer in volume."""
 
 CORNER = 3e-6
 """Where refinement toward the rims of held end planes, where stress is singular, stops [radii]."""
@@ -39,7 +45,8 @@ class Load:
     halves
         Supports of the half of a symmetric pair, in the order that ``join`` takes.
     join
-        Responses of the halves and the cell's length -> stiffness matrix of the whole.
+        Responses of the halves and the cell's length -> stiffness matrices of the whole, all of
+        shape (points, motions, motions).
     index
         Which motion of the whole is the load's own.
     grading
@@ -63,12 +70,10 @@ def _beam(responses: list[FloatArray], length: float) -> FloatArray:
     Turning one end plane is half a symmetric turn of both and half an antisymmetric one, and the
     latter is a shift by ``L/2`` seen in a turned frame.
     """
-    shear = responses[0][0, 0]
-    if len(responses) == 1:
-        return responses[0]
+    shear, turn = (response[:, 0, 0] for response in responses)
     coupling = -shear * length / 2
-    bending = responses[1][0, 0] + shear * length**2 / 4
-    return np.array([[shear, coupling], [coupling, bending]])
+    bending = turn + shear * length**2 / 4
+    return np.stack([np.stack([shear, coupling], -1), np.stack([coupling, bending], -1)], -2)
 
 
 _GRADED = Grading(corner=CORNER)
@@ -79,7 +84,7 @@ LOADS = {
         NORMAL["confined"], (NORMAL["confined"],), _alone, 0, Grading(foot=1e-5)
     ),
     ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading()),
-    ("shear", None): Load(BEAM, (SHEAR_HALF,), _beam, 0, _GRADED),
+    ("shear", None): Load(BEAM, (SHEAR_HALF,), _alone, 0, _GRADED),
     ("bending", None): Load(BEAM, (SHEAR_HALF, BENDING_HALF), _beam, 1, _GRADED),
 }
 """Load and boundary condition (for the normal load) -> how it is solved."""
@@ -95,6 +100,25 @@ def find_load(load: str, bc: str | None) -> Load:
         choices = ", ".join(str(c) for name, c in LOADS if name == load)
         raise UnsupportedLoad([Violation("bc", bc, choices)])
     raise UnsupportedLoad([Violation("load", load, ", ".join(known))])
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """Many points of one geometry and order, arrays of shape (points,).
+
+    Parameters
+    ----------
+    stiffness
+        Stiffness of the load's own motion, NaN where the system is singular.
+    reduction_error
+        Bound of what a reduced basis added, same unit; zero where none was used.
+    way
+        `sweep.Way` of each point.
+    """
+
+    stiffness: FloatArray
+    reduction_error: FloatArray
+    way: NDArray[np.int8]
 
 
 class CellSolver:
@@ -127,6 +151,7 @@ class CellSolver:
     ) -> None:
         self._load, self._half = load, half
         self._length = geometry.radius_i + geometry.radius_j + geometry.gap
+        self._gap_ratio = geometry.gap / max(geometry.radius_i, geometry.radius_j)
         mesh = mesh or build_cell_mesh(geometry, load.grading, half)
         supports = load.halves if half else (load.whole,)
         self._operators = [CellOperators(mesh, order, s, projected) for s in supports]
@@ -143,16 +168,31 @@ class CellSolver:
 
     def stiffness_matrix(self, materials: Materials) -> FloatArray:
         """Stiffness of the end plane's motions: one, or shear and rotation with their coupling."""
-        responses = [operators.response(materials) for operators in self._operators]
-        return self._load.join(responses, self._length) if self._half else responses[0]
+        responses = [operators.response(materials)[None] for operators in self._operators]
+        return self._join(responses)[0]
 
     def stiffness(self, materials: Materials) -> float:
         """Stiffness of the load's own motion [N/m, or N m/rad for rotations]."""
-        matrix = self.stiffness_matrix(materials)
-        index = min(self._load.index, len(matrix) - 1)
-        return float(matrix[index, index])
+        return float(self._own(self.stiffness_matrix(materials)[None])[0])
+
+    def sweep(self, materials: list[Materials], tolerance: float) -> Sweep:
+        """Stiffness of many points; ``tolerance`` is what a reduction may add, relative."""
+        offset = OFFSET * self._gap_ratio
+        answers = [respond(o, materials, tolerance, offset) for o in self._operators]
+        stiffness = self._own(self._join([answer.matrix for answer in answers]))
+        errors = [a.error[:, :, None] * np.eye(a.error.shape[1]) for a in answers]
+        way = np.max([answer.way for answer in answers], axis=0)
+        return Sweep(stiffness, self._own(self._join(errors)), way)
+
+    def _join(self, responses: list[FloatArray]) -> FloatArray:
+        return self._load.join(responses, self._length) if self._half else responses[0]
+
+    def _own(self, matrices: FloatArray) -> FloatArray:
+        index = min(self._load.index, matrices.shape[1] - 1)
+        return matrices[:, index, index]
 
 
+@one_thread()
 def solve_level(
     cell: Cell,
     order: int,
