@@ -21,7 +21,7 @@ from bondcell.convergence import (
     observed_order,
     relative_error,
 )
-from bondcell.errors import BondcellError, InputError, MissingLibrary
+from bondcell.errors import BondcellError, InputError
 from bondcell.evaluate import evaluate
 from bondcell.fem import structured, triangles
 from bondcell.fem.level import Level
@@ -123,8 +123,6 @@ def _climb(
             if number == 0:
                 level()
             rungs.append(_Rung(value, Status.ok, _median([level() for _ in range(repeats)])))
-        except MissingLibrary:
-            raise
         except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError) as error:
             warnings.warn(f"case {case}, {parameter} = {value}: {error}", stacklevel=2)
             rungs.append(_Rung(value, _failure(error), _FAILED))
