@@ -16,7 +16,7 @@ from bondcell.fem.half_cell import FOOT_ANGLE, MIDDLE_ANGLE, NEAR_FIELD, HalfCel
 from bondcell.fem.half_matrix import add_matrix
 from bondcell.fem.half_particle import add_particle
 from bondcell.fem.orientation import orient
-from bondcell.fem.patch import Patch
+from bondcell.fem.patch import Patch, patch_points
 
 
 @dataclass(frozen=True)
@@ -93,13 +93,16 @@ class CellMesh:
 
     def mapping(self, order: int) -> CurvedMapping:
         """Geometry interpolated at order ``order``."""
-        points = lobatto_points(order)
-        along, across = points[:, None], points[None, :]
-        nodes = np.empty((2, len(self.patches), order + 1, order + 1))
-        for row, (patch, flip) in enumerate(zip(self.patches, self.flips, strict=True)):
-            r, y = patch.points(along, across)
-            nodes[:, row] = r, flip * (self.offset - y)
-        return CurvedMapping(self.topology, nodes)
+        if order not in self._mappings:
+            points = lobatto_points(order)
+            nodes = patch_points(self.patches, points[:, None], points[None, :])
+            nodes[1] = self.flips[:, None, None] * (self.offset - nodes[1])
+            self._mappings[order] = CurvedMapping(self.topology, nodes)
+        return self._mappings[order]
+
+    @cached_property
+    def _mappings(self) -> dict[int, CurvedMapping]:
+        return {}
 
     @cached_property
     def boundary(self) -> dict[str, NDArray[np.int64]]:
@@ -214,9 +217,8 @@ def _glue(halves: list[HalfCell], geometry: Geometry) -> CellMesh:
         for patch, before, after in zip(patches, given, oriented, strict=True)
     )
     positions = np.empty((2, len(number)))
-    for quad, patch, flip in zip(oriented, turned, flips, strict=True):
-        r, y = patch.points(np.array([0.0, 1, 1, 0]), np.array([0.0, 0, 1, 1]))
-        positions[:, quad] = r, flip * (offset - y)
+    r, y = patch_points(turned, np.array([0.0, 1, 1, 0]), np.array([0.0, 0, 1, 1]))
+    positions[:, oriented] = r, np.array(flips)[:, None] * (offset - y)
     topology = MeshQuad(positions, np.ascontiguousarray(oriented.T), sort_t=False)
     labels: dict[str, list[int]] = {}
     for part in halves:

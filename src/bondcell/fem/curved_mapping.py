@@ -84,7 +84,29 @@ class CurvedMapping(MappingIsoparametric):
         elif derivative == 1:
             y = dy
         nodes = self.nodes[i] if tind is None else self.nodes[i][tind]
-        return np.einsum("eab,aq,bq->eq", nodes, x, y, optimize=True)
+        return np.asarray(((nodes @ y) * x).sum(axis=1))
+
+    def on_grid(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Coordinates and their derivatives at a tensor grid of reference points.
+
+        Parameters
+        ----------
+        points
+            Reference points of either direction, shape (q,).
+
+        Returns
+        -------
+        place
+            Shape (2, elements, q^2) [m].
+        jacobian
+            Coordinate by reference direction, shape (2, 2, elements, q^2) [m].
+        """
+        value, slope = lagrange_tables(self.order, points)
+        shape = (*self.nodes.shape[:2], points.size**2)
+        along, across = self.nodes @ value, self.nodes @ slope
+        place = (value.T @ along).reshape(shape)
+        jacobian = [(slope.T @ along).reshape(shape), (value.T @ across).reshape(shape)]
+        return place, np.stack(jacobian, axis=1)
 
     def Fmap(self, i: int, X: FloatArray, tind: NDArray[Any] | None = None) -> FloatArray:
         """Coordinate ``i`` at reference points ``X``, shape (elements, points) [m]."""

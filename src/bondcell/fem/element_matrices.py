@@ -16,15 +16,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from skfem import Basis, MeshQuad
-from skfem.element import ElementQuadP
-from skfem.mapping import MappingIsoparametric
 
 from bondcell.cell import FloatArray
-from bondcell.fem.strain import DEVIATOR, TRACE, FourierMode
+from bondcell.fem.cell_basis import CellBasis, cell_basis, gauss_square
+from bondcell.fem.strain import D_R, D_Z, DEVIATOR, OVER_R, TRACE, FourierMode
+from bondcell.fem.tensor_sums import sum_products, sum_shapes
 
-EXTRA_POINTS = 3
-"""Gauss points a direction beyond the order: curved geometry and 1/r are not polynomials."""
+__all__ = ["ElementMatrices", "cell_basis", "element_matrices", "gauss_square"]
 
 
 @dataclass(frozen=True)
@@ -44,21 +42,6 @@ class ElementMatrices:
     bulk_root: FloatArray
 
 
-def gauss_square(count: int) -> tuple[FloatArray, FloatArray]:
-    """Tensor Gauss rule on the unit square: points (2, count^2) and weights."""
-    x, w = np.polynomial.legendre.leggauss(count)
-    x, w = (x + 1) / 2, w / 2
-    points = np.array([np.repeat(x, count), np.tile(x, count)])
-    return points, np.outer(w, w).ravel()
-
-
-def cell_basis(mesh: MeshQuad, mapping: MappingIsoparametric, order: int) -> Basis:
-    """Scalar hierarchical basis of one displacement component on the curved mesh."""
-    return Basis(
-        mesh, ElementQuadP(order), mapping=mapping, quadrature=gauss_square(order + EXTRA_POINTS)
-    )
-
-
 @lru_cache(maxsize=32)
 def _pressure_table(order: int, count: int) -> FloatArray:
     """Polynomials of total degree below ``order`` at the Gauss points, constant first."""
@@ -72,7 +55,7 @@ def _pressure_table(order: int, count: int) -> FloatArray:
     return np.stack([legendre[0][:, a] * legendre[1][:, b] for a, b in pairs], axis=-1)
 
 
-def element_matrices(basis: Basis, mode: FourierMode, projected: bool) -> ElementMatrices:
+def element_matrices(basis: CellBasis, mode: FourierMode, projected: bool) -> ElementMatrices:
     """Assemble both matrices of every element.
 
     Parameters
@@ -85,58 +68,65 @@ def element_matrices(basis: Basis, mode: FourierMode, projected: bool) -> Elemen
         Project the dilatation on polynomials of degree below the order (mixed form), or keep it
         as it is (displacement form: an upper bound of the stiffness, but it locks near nu = 1/2).
     """
-    radius = basis.global_coordinates()[0]
+    radius = basis.place[0]
     weight = np.sqrt(mode.angle_integral * basis.dx * radius)
-    # tables[k] is value/r, d/dr, d/dz of every shape function, times the root of the weight.
-    values = np.stack(
-        [np.broadcast_to(np.asarray(phi[0]), weight.shape) for phi in basis.basis], axis=1
-    )
-    gradients = np.stack([phi[0].grad for phi in basis.basis], axis=2)
-    tables = np.stack([values / radius[:, None], *gradients]) * weight[:, None]
+    pulled = _pulled_back(basis, radius) * weight
     return ElementMatrices(
-        shear=_shear(tables, mode), bulk_root=_bulk_root(tables, mode, weight, basis, projected)
+        shear=_shear(pulled, mode, basis),
+        bulk_root=_bulk_root(pulled, mode, weight, basis, projected),
     )
 
 
-def _shear(tables: FloatArray, mode: FourierMode) -> FloatArray:
-    components = len(mode.components)
-    elements, shapes = tables.shape[1:3]
-    coefficients = 2 * np.einsum(
-        "cxs,st,dyt->cxdy", mode.strain, DEVIATOR, mode.strain, optimize=True
-    )
-    shear = np.zeros((elements, components, shapes, components, shapes))
-    for x in range(3):
-        for y in range(3):
-            block = coefficients[:, x, :, y]
-            if not block.any():
-                continue
-            product = tables[x] @ tables[y].transpose(0, 2, 1)
-            for c, d in zip(*np.nonzero(block), strict=True):
-                shear[:, c, :, d] += block[c, d] * product
+def _pulled_back(basis: CellBasis, radius: FloatArray) -> FloatArray:
+    """Coefficients of (value, d/dx, d/dy) in (value/r, d/dr, d/dz), shape (3, 3, elements, q)."""
+    (rx, ry), (zx, zy) = basis.jacobian
+    result = np.zeros((3, 3, *radius.shape))
+    result[OVER_R, 0] = 1 / radius
+    result[D_R, 1:] = np.array([zy, -zx]) / basis.determinant
+    result[D_Z, 1:] = np.array([-ry, rx]) / basis.determinant
+    return result
+
+
+def _shear(pulled: FloatArray, mode: FourierMode, basis: CellBasis) -> FloatArray:
+    components, elements = len(mode.components), pulled.shape[2]
+    q, shapes = basis.points_along, basis.Nbfun
+    coefficients = 2 * np.einsum("cxs,st,dyt->cdxy", mode.strain, DEVIATOR, mode.strain)
+    # Products of two entries of `pulled` at the points: by (x, y), then by the pair of kinds.
+    products = (pulled[:, None, :, None] * pulled[None, :, None, :]).reshape(9, -1)
+    shear = np.empty((elements, components, shapes, components, shapes))
+    for c in range(components):
+        for d in range(c, components):
+            fields = (coefficients[c, d].reshape(9) @ products).reshape(3, 3, elements, q, q)
+            block = sum_products(fields, basis.elem.p)
+            shear[:, c, :, d] = block
+            if c != d:
+                shear[:, d, :, c] = block.transpose(0, 2, 1)
     return shear.reshape(elements, components * shapes, components * shapes)
 
 
 def _bulk_root(
-    tables: FloatArray, mode: FourierMode, weight: FloatArray, basis: Basis, projected: bool
+    pulled: FloatArray, mode: FourierMode, weight: FloatArray, basis: CellBasis, projected: bool
 ) -> FloatArray:
-    elements, shapes, points = tables.shape[1:]
+    components, elements = len(mode.components), len(weight)
     trace = np.einsum("cxs,s->cx", mode.strain, TRACE)
     if not trace.any():
-        return np.zeros((elements, 0, len(mode.components) * shapes))
-    dilatation = np.zeros((elements, len(mode.components), shapes, points))
-    for c, x in zip(*np.nonzero(trace), strict=True):
-        dilatation[:, c] += trace[c, x] * tables[x]
-    flat = dilatation.reshape(elements, -1, points).transpose(0, 2, 1)
-    count = round(points**0.5)
-    order = basis.elem.p if projected else count
-    pressures = _pressure_table(order, count) * weight[:, :, None]
+        return np.zeros((elements, 0, components * basis.Nbfun))
+    dilatation = np.tensordot(trace, pulled, 1)
     if projected:
+        pressures = _pressure_table(basis.elem.p, basis.points_along) * weight[:, :, None]
         orthonormal, _ = np.linalg.qr(pressures)
-        return np.asarray(orthonormal.transpose(0, 2, 1) @ flat)
-    # Without projection any orthonormal basis of the quadrature points will do, constant first.
-    mean = weight / np.linalg.norm(weight, axis=1, keepdims=True)
-    rotation = _householder(mean)
-    return np.asarray(rotation @ flat)
+        rows = np.ascontiguousarray(orthonormal.transpose(0, 2, 1))
+    else:
+        # Any orthonormal basis of the quadrature points will do, constant first.
+        rows = _householder(weight / np.linalg.norm(weight, axis=1, keepdims=True))
+    q = basis.points_along
+    root = np.empty((elements, rows.shape[1], components, basis.Nbfun))
+    for c in range(components):
+        fields = dilatation[c][:, :, None] * rows
+        root[:, :, c] = sum_shapes(fields.reshape(3, -1, q, q), basis.tables).reshape(
+            elements, -1, basis.Nbfun
+        )
+    return root.reshape(elements, -1, components * basis.Nbfun)
 
 
 def _householder(unit: FloatArray) -> FloatArray:

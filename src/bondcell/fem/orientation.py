@@ -26,22 +26,23 @@ def orient(quads: NDArray[np.int64]) -> NDArray[np.int64]:
         The same elements with vertices reordered: edges 0-1 and 3-2 are directed alike, as are
         0-3 and 1-2, and each directed edge is the same in all elements that own it.
     """
-    start = _edge_starts(quads)
-    oriented = np.empty_like(quads)
-    for row, quad in enumerate(quads):
+    rings = [[int(vertex) for vertex in quad] for quad in quads]
+    start = _edge_starts(rings)
+    oriented = []
+    for ring in rings:
         for turn in range(4):
-            v0, v1, v2, v3 = np.roll(quad, -turn)
+            v0, v1, v2, v3 = ring[turn:] + ring[:turn]
             if start[frozenset((v0, v1))] == v0 and start[frozenset((v0, v3))] == v0:
-                oriented[row] = v0, v1, v2, v3
+                oriented.append((v0, v1, v2, v3))
                 break
-    return oriented
+    return np.array(oriented, dtype=np.int64)
 
 
-def _edge_starts(quads: NDArray[np.int64]) -> dict[Key, int]:
+def _edge_starts(rings: list[list[int]]) -> dict[Key, int]:
     owners: dict[Key, list[int]] = {}
-    for row, quad in enumerate(quads):
-        for a, b in zip(quad, np.roll(quad, -1), strict=True):
-            owners.setdefault(frozenset((int(a), int(b))), []).append(row)
+    for row, ring in enumerate(rings):
+        for a, b in zip(ring, ring[1:] + ring[:1], strict=True):
+            owners.setdefault(frozenset((a, b)), []).append(row)
     start: dict[Key, int] = {}
     for edge in owners:
         if edge in start:
@@ -52,16 +53,15 @@ def _edge_starts(quads: NDArray[np.int64]) -> dict[Key, int]:
             current = strip.pop()
             tail = start[current]
             for row in owners[current]:
-                opposite, opposite_tail = _across(quads[row], current, tail)
+                opposite, opposite_tail = _across(rings[row], current, tail)
                 if opposite not in start:
                     start[opposite] = opposite_tail
                     strip.append(opposite)
     return start
 
 
-def _across(quad: NDArray[np.int64], edge: Key, tail: int) -> tuple[Key, int]:
-    """Opposite edge of ``edge`` in ``quad``, and the vertex that faces ``tail``."""
-    ring = [int(vertex) for vertex in quad]
+def _across(ring: list[int], edge: Key, tail: int) -> tuple[Key, int]:
+    """Opposite edge of ``edge`` in ``ring``, and the vertex that faces ``tail``."""
     opposite = frozenset(ring) - edge
     position = ring.index(tail)
     neighbours = {ring[position - 1], ring[(position + 1) % 4]}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,27 +27,35 @@ class Patch:
     top: tuple[Point, Point]
     corners: FloatArray
 
-    def points(self, along: FloatArray, across: FloatArray) -> FloatArray:
-        """Positions (2, ...) [m] at coordinates of the sub-quadrilateral's unit square."""
-        c = self.corners
-        s, t = (
-            (1 - along) * (1 - across) * c[0, k]
-            + along * (1 - across) * c[1, k]
-            + along * across * c[2, k]
-            + (1 - along) * across * c[3, k]
-            for k in (0, 1)
+
+def patch_points(patches: Sequence[Patch], along: FloatArray, across: FloatArray) -> FloatArray:
+    """Positions (2, patches, ...) [m] at coordinates of each sub-quadrilateral's unit square."""
+    shape = (-1, *np.ones(np.ndim(along + across), dtype=int))
+
+    def column(values: list[float]) -> FloatArray:
+        return np.reshape(values, shape)
+
+    weights = (1 - along) * (1 - across), along * (1 - across), along * across, (1 - along) * across
+    s, t = (
+        sum(
+            column([patch.corners[m, k] for patch in patches]) * weight
+            for m, weight in enumerate(weights)
         )
-        (r0, y0), (r1, y1) = self.top
-        top_r, top_y = r0 + s * (r1 - r0), y0 + s * (y1 - y0)
-        if self.angles is not None:
-            angle = self.angles[0] + s * (self.angles[1] - self.angles[0])
-            base_r = self.radius * np.sin(angle)
-            base_y = -2 * self.radius * np.sin(angle / 2) ** 2
-        else:
-            assert self.base is not None
-            (q0, w0), (q1, w1) = self.base
-            base_r, base_y = q0 + s * (q1 - q0), w0 + s * (w1 - w0)
-        return np.array([base_r + t * (top_r - base_r), base_y + t * (top_y - base_y)])
+        for k in (0, 1)
+    )
+    top = [[column([p.top[m][k] for p in patches]) for k in (0, 1)] for m in (0, 1)]
+    ends = [p.base or ((0.0, 0.0), (0.0, 0.0)) for p in patches]
+    base = [[column([end[m][k] for end in ends]) for k in (0, 1)] for m in (0, 1)]
+    angles = [column([(p.angles or (0.0, 0.0))[m] for p in patches]) for m in (0, 1)]
+    # Of an arc and a segment, the one that a patch does not have is a point at the origin.
+    radius = column([0.0 if p.angles is None else p.radius for p in patches])
+    angle = angles[0] + s * (angles[1] - angles[0])
+    arc = radius * np.sin(angle), -2 * radius * np.sin(angle / 2) ** 2
+    result = []
+    for k in (0, 1):
+        bottom = arc[k] + base[0][k] + s * (base[1][k] - base[0][k])
+        result.append(bottom + t * (top[0][k] + s * (top[1][k] - top[0][k]) - bottom))
+    return np.array(result)
 
 
 UNIT_SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])

@@ -1,0 +1,102 @@
+"""Sums over the points of a tensor grid, one direction at a time.
+
+A shape function is ``f_a(x) g_b(y)``. Its value, x-slope and y-slope (the three *kinds*) are
+products too, so with coefficients ``C`` at the points ``(i, j)``::
+
+    sum_ij C_ij (f_a f_c)_i (g_b g_d)_j = sum_j [ sum_i C_ij (f_a f_c)_i ] (g_b g_d)_j
+
+costs a tenth of the sum over all points at once, at order 8. Kinds that are alike along one
+direction are collected before the sum along the other.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bondcell.cell import FloatArray
+from bondcell.fem.cell_basis import LineTables, line_tables
+
+X_SLOPE = (0, 1, 0)
+"""Whether a kind differentiates along x."""
+
+Y_SLOPE = (0, 0, 1)
+"""Whether a kind differentiates along y."""
+
+_Y_PAIRS = ((0, 0), (0, 1), (1, 0), (1, 1))
+
+
+@lru_cache(maxsize=32)
+def _pair_tables(order: int, count: int) -> tuple[list[FloatArray], FloatArray, NDArray[np.int64]]:
+    """Products of two functions along x (a table each pair of kinds along y) and along y.
+
+    The last array says where the matrix entries of the square's shape functions are found.
+    """
+    tables = line_tables(order, count)
+    line = (tables.value, tables.slope)
+    n = order + 1
+
+    def product(one: int, other: int) -> FloatArray:
+        return np.asarray((line[one][:, None] * line[other]).reshape(n * n, count))
+
+    along_x = [
+        np.concatenate([product(X_SLOPE[k], X_SLOPE[m]) for k, m in kinds_of(pair)], axis=1)
+        for pair in _Y_PAIRS
+    ]
+    along_y = np.concatenate([product(*pair) for pair in _Y_PAIRS], axis=1).T
+    row = tables.first[:, None] * n + tables.first
+    column = tables.second[:, None] * n + tables.second
+    return along_x, np.ascontiguousarray(along_y), row * n * n + column
+
+
+def kinds_of(y_slopes: tuple[int, int]) -> list[tuple[int, int]]:
+    """Pairs of kinds with the given slopes along y."""
+    return [(k, m) for k in range(3) for m in range(3) if (Y_SLOPE[k], Y_SLOPE[m]) == y_slopes]
+
+
+def sum_products(coefficients: FloatArray, order: int) -> FloatArray:
+    """Weighted sums of products of two shape functions.
+
+    Parameters
+    ----------
+    coefficients
+        Of each pair of kinds at the points, shape (3, 3, batch, q, q).
+    order
+        Polynomial order.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (batch, shapes, shapes).
+    """
+    batch, count = coefficients.shape[2:4]
+    along_x, along_y, place = _pair_tables(order, count)
+    half = []
+    for pair, table in zip(_Y_PAIRS, along_x, strict=True):
+        collected = np.stack([coefficients[k, m] for k, m in kinds_of(pair)], axis=1)
+        half.append(table @ collected.reshape(batch, -1, count))
+    both = np.concatenate(half, axis=2).reshape(-1, along_y.shape[0]) @ along_y
+    return np.asarray(both.reshape(batch, -1)[:, place])
+
+
+def sum_shapes(coefficients: FloatArray, tables: LineTables) -> FloatArray:
+    """Weighted sums of shape functions.
+
+    Parameters
+    ----------
+    coefficients
+        Of each kind at the points, shape (3, batch, q, q).
+    tables
+        Functions of one direction.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (batch, shapes).
+    """
+    value, slope = tables.value, tables.slope
+    level = coefficients[0] @ value.T + coefficients[2] @ slope.T
+    both = value @ level + slope @ (coefficients[1] @ value.T)
+    return np.asarray(both[:, tables.first, tables.second])
