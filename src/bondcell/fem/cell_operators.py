@@ -10,7 +10,7 @@ from bondcell.fem.cell_mesh import CellMesh
 from bondcell.fem.element_matrices import ElementMatrices, cell_basis, element_matrices
 from bondcell.fem.half_cell import MATRIX, PARTICLE_I, PARTICLE_J
 from bondcell.fem.lifts import lifts, rigid_motions
-from bondcell.fem.materials import Materials
+from bondcell.fem.materials import Constants
 from bondcell.fem.numbering import Numbering
 from bondcell.fem.substructure import Condensed, Substructure
 from bondcell.fem.supports import Supports
@@ -119,28 +119,28 @@ class CellOperators:
             self._particle_systems[key] = self._particles[particle].condense(poisson).matrix
         return self._particle_systems[key]
 
-    def response(self, materials: Materials) -> FloatArray:
+    def response(self, constants: Constants) -> FloatArray:
         """Stiffness matrix of the motions, shape (motions, motions).
 
         Of the whole cell also where the mesh is half of it: half the energy at half the motion.
         """
-        matrix = self.matrix_system(materials.poisson_m)
-        soft = materials.particles[0][0] < materials.shear_m
+        matrix = self.matrix_system(constants.poisson_m)
+        soft = constants.shear[0] < constants.shear_m
         lift = slice(self.motions, None) if soft else slice(0, self.motions)
         system, right = matrix.matrix.copy(), matrix.coupling[:, lift].copy()
         constant = matrix.own[lift, lift].copy()
         free = np.ones(self.size, dtype=bool)
         for k, at in enumerate(self.of_particle):
-            modulus, poisson = materials.particles[k]
-            if np.isinf(modulus):
+            if np.isinf(constants.shear[k]):
                 free[at] = False
                 continue
-            particle = modulus / materials.shear_m * self.particle_system(k, poisson)
+            ratio = constants.shear[k] / constants.shear_m
+            particle = ratio * self.particle_system(k, constants.poisson[k])
             system[np.ix_(at, at)] += particle
             if soft and k == 0:
                 pull = particle[:, : len(self._followed)] @ self._followed
                 right[at] += pull
                 constant += self._followed.T @ pull[: len(self._followed)]
         answer = solve_symmetric(system[np.ix_(free, free)], right[free])
-        response = materials.shear_m * (constant - right[free].T @ answer)
+        response = constants.shear_m * (constant - right[free].T @ answer)
         return np.asarray(response / 2 if self.is_half else response)

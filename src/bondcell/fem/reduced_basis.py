@@ -54,11 +54,9 @@ class Points:
     compressibility: FloatArray
 
     @classmethod
-    def of(cls, materials: list[Materials], particles: int) -> Points:
+    def of(cls, materials: Materials, particles: int) -> Points:
         """Collect the dimensionless numbers."""
-        ratios = [[m.particles[k][0] / m.shear_m for k in range(particles)] for m in materials]
-        poisson = np.array([m.poisson_m for m in materials])
-        return cls(np.array(ratios), 1.5 * (1 - 2 * poisson) / (1 + poisson))
+        return cls(materials.ratios[:, :particles], materials.compressibility)
 
     def take(self, index: NDArray[np.int64]) -> Points:
         """The points at ``index``."""

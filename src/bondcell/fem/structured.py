@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -15,7 +15,7 @@ from bondcell.errors import UnsupportedLoad, Violation
 from bondcell.fem.cell_mesh import CellMesh, Geometry, Grading, build_cell_mesh
 from bondcell.fem.cell_operators import CellOperators
 from bondcell.fem.level import Level
-from bondcell.fem.materials import Materials
+from bondcell.fem.materials import Constants, Materials
 from bondcell.fem.supports import (
     BEAM,
     BENDING_HALF,
@@ -166,16 +166,16 @@ class CellSolver:
         """Elements of the mesh."""
         return self._operators[0].elements
 
-    def stiffness_matrix(self, materials: Materials) -> FloatArray:
+    def stiffness_matrix(self, constants: Constants) -> FloatArray:
         """Stiffness of the end plane's motions: one, or shear and rotation with their coupling."""
-        responses = [operators.response(materials)[None] for operators in self._operators]
+        responses = [operators.response(constants)[None] for operators in self._operators]
         return self._join(responses)[0]
 
-    def stiffness(self, materials: Materials) -> float:
+    def stiffness(self, constants: Constants) -> float:
         """Stiffness of the load's own motion [N/m, or N m/rad for rotations]."""
-        return float(self._own(self.stiffness_matrix(materials)[None])[0])
+        return float(self._own(self.stiffness_matrix(constants)[None])[0])
 
-    def sweep(self, materials: list[Materials], tolerance: float) -> Sweep:
+    def sweep(self, materials: Materials, tolerance: float) -> Sweep:
         """Stiffness of many points; ``tolerance`` is what a reduction may add, relative."""
         offset = OFFSET * self._gap_ratio
         answers = [respond(o, materials, tolerance, offset) for o in self._operators]
@@ -216,15 +216,16 @@ def solve_level(
     grading, projected
         Mesh grading (the load's own by default) and form; see `Grading` and `element_matrices`.
     """
-    geometry, materials = split_cell(cell)
+    cell = cell.ravel()
+    geometry, materials = geometry_of(cell), Materials.of(cell)
     entry = find_load(load, bc)
-    half = geometry.is_mirrored and materials.is_mirrored
+    half = bool(geometry.is_mirrored and materials.is_mirrored[0])
     started = time.perf_counter()
     mesh = build_cell_mesh(geometry, grading or entry.grading, half)
     meshed = time.perf_counter()
     solver = CellSolver(geometry, entry, half, order, mesh, projected)
     assembled = time.perf_counter()
-    stiffness = solver.stiffness(materials)
+    stiffness = solver.stiffness(materials.constants(0))
     solved = time.perf_counter()
     return Level(
         stiffness=stiffness,
@@ -236,9 +237,6 @@ def solve_level(
     )
 
 
-def split_cell(cell: Cell) -> tuple[Geometry, Materials]:
-    """Geometry and materials of a single cell."""
-    values = {name: float(np.squeeze(value)) for name, value in cell.as_dict().items()}
-    names = ("radius_i", "radius_j", "gap", "cylinder_radius")
-    geometry = Geometry(**{name: values.pop(name) for name in names})
-    return geometry, Materials(**values)
+def geometry_of(cell: Cell) -> Geometry:
+    """Dimensions of a raveled cell whose points share them."""
+    return Geometry(*(float(getattr(cell, field.name)[0]) for field in fields(Geometry)))

@@ -44,7 +44,7 @@ class Responses:
 
 
 def respond(
-    operators: CellOperators, materials: list[Materials], tolerance: float, offset: float
+    operators: CellOperators, materials: Materials, tolerance: float, offset: float
 ) -> Responses:
     """Solve all points.
 
@@ -59,54 +59,52 @@ def respond(
     offset
         See `reduced_basis.InterpolatedMatrix`.
     """
-    count, m = len(materials), operators.motions
+    count, m = materials.count, operators.motions
     answer = Responses(
         np.full((count, m, m), np.nan), np.zeros((count, m)), np.zeros(count, dtype=np.int8)
     )
-    groups: dict[tuple[float, ...], list[int]] = {}
-    for k, material in enumerate(materials):
-        if all(modulus >= material.shear_m for modulus, _ in material.particles):
-            particles = material.particles[: len(operators.of_particle)]
-            groups.setdefault(tuple(poisson for _, poisson in particles), []).append(k)
-    for poisson, members in groups.items():
-        if _reduction_pays(materials, members):
-            _reduce(operators, poisson, materials, np.array(members), tolerance, offset, answer)
-    for point in np.flatnonzero(answer.way == Way.direct):
+    stiff = (materials.ratios >= 1).all(axis=1)
+    poisson = np.stack([materials.poisson_i, materials.poisson_j], axis=1)
+    poisson = poisson[:, : len(operators.of_particle)]
+    for pair in np.unique(poisson[stiff], axis=0):
+        members = np.flatnonzero(stiff & (poisson == pair).all(axis=1))
+        if _reduction_pays(materials.poisson_m[members]):
+            _reduce(operators, list(pair), materials, members, tolerance, offset, answer)
+    for point in map(int, np.flatnonzero(answer.way == Way.direct)):
         try:
-            answer.matrix[point] = operators.response(materials[point])
+            answer.matrix[point] = operators.response(materials.constants(point))
         except np.linalg.LinAlgError:
             continue
     return answer
 
 
-def _reduction_pays(materials: list[Materials], members: list[int]) -> bool:
+def _reduction_pays(poisson_m: FloatArray) -> bool:
     """Compare costs in units of a condensation: a point costs 1/20, the greedy search about 25."""
-    distinct = len({materials[k].poisson_m for k in members})
-    return distinct + len(members) / 20 > min(distinct, NODES[2]) + 25
+    distinct = np.unique(poisson_m).size
+    return bool(distinct + poisson_m.size / 20 > min(distinct, NODES[2]) + 25)
 
 
 def _reduce(
     operators: CellOperators,
-    poisson: tuple[float, ...],
-    materials: list[Materials],
+    poisson: list[float],
+    materials: Materials,
     members: NDArray[np.int64],
     tolerance: float,
     offset: float,
     answer: Responses,
 ) -> None:
     """Serve the members that a reduced basis serves within the tolerance."""
-    own = [materials[k] for k in members]
+    own = materials.take(members)
     points = Points.of(own, len(poisson))
-    basis = ReducedBasis(operators, list(poisson), points, tolerance, offset)
+    basis = ReducedBasis(operators, poisson, points, tolerance, offset)
     response, bound = basis.respond(points)
     for _ in range(REFINEMENTS):
-        relative = _relative(response, bound)
-        missed = np.flatnonzero(relative > tolerance)
+        missed = np.flatnonzero(_relative(response, bound) > tolerance)
         if not missed.size or not basis.refine(points.take(missed), tolerance):
             break
         response, bound = basis.respond(points)
     good = _relative(response, bound) <= tolerance
-    scale = np.array([m.shear_m for m in own]) / (2 if operators.is_half else 1)
+    scale = own.shear_m / (2 if operators.is_half else 1)
     size = np.abs(np.diagonal(response, axis1=1, axis2=2))
     answer.matrix[members[good]] = (scale[:, None, None] * response)[good]
     error = scale[:, None] * (bound + size * basis.interpolation_error)
