@@ -53,6 +53,8 @@ def test_base_case_agrees_with_another_code(bc, poisson_m, expected):
 def test_other_loads_agree_with_another_code(load, expected):
     answer = solve(cell(), load=load, tolerance=1e-7)
     assert answer.stiffness[0] == pytest.approx(expected, rel=1e-7)
+    if load == "bending":
+        assert abs(answer.coupling[0]) == pytest.approx(229.290441, rel=1e-7)
 
 
 def test_confined_value_lies_between_cut_cells_from_both_sides():

@@ -43,6 +43,8 @@ class Ladder:
         Of each point's last rung, NaN where it could not be solved, shape (points,).
     error_estimate, reduction_error
         Relative; the second is part of the first. Infinite where fewer than two rungs were solved.
+    coupling
+        Coupling force of the bending load [N/rad], else NaN.
     order, dof, way, seconds
         Of each point: last order, its unknowns, how it was solved, share of the time [s].
     """
@@ -58,6 +60,7 @@ class Ladder:
     ) -> None:
         count = materials.count
         self.stiffness, self.error_estimate = np.full(count, np.nan), np.full(count, np.inf)
+        self.coupling = np.full(count, np.nan)
         self.reduction_error, self.seconds = np.zeros(count), np.zeros(count)
         self.order, self.dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
         self.way = np.zeros(count, dtype=np.int8)
@@ -74,7 +77,7 @@ class Ladder:
             rungs[still_open, number] = self.stiffness[still_open] = sweep.stiffness
             self.reduction_error[still_open] = sweep.reduction_error / np.abs(sweep.stiffness)
             self.way[still_open], self.order[still_open] = sweep.way, order
-            self.dof[still_open] = solver.dof
+            self.dof[still_open], self.coupling[still_open] = solver.dof, sweep.coupling
             self._estimate(still_open, rungs[still_open, : number + 1])
             now = time.perf_counter()
             self.seconds[still_open] += (now - started) / still_open.size

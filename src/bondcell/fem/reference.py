@@ -40,6 +40,8 @@ class Reference:
         Wall time a point; the operators' time is shared by the points that used them [s].
     way
         How the finest solve was done, see `sweep.Way`.
+    coupling
+        Force across the axis for a unit rotation of end plane j, of the bending load [N/rad].
     reduction_error
         The part of ``error_estimate`` that bounds what a reduced basis added.
     """
@@ -51,6 +53,7 @@ class Reference:
     order: NDArray[np.int64]
     seconds: FloatArray
     way: NDArray[np.int8]
+    coupling: FloatArray
     reduction_error: FloatArray
 
 
@@ -99,6 +102,7 @@ def _empty(count: int) -> Reference:
         order=np.zeros(count, dtype=np.int64),
         seconds=np.zeros(count),
         way=np.zeros(count, dtype=np.int8),
+        coupling=np.full(count, np.nan),
         reduction_error=np.zeros(count),
     )
 
@@ -111,6 +115,7 @@ def _report(ladder: Ladder, at: NDArray[np.int64], tolerance: float, answer: Ref
     known = solved & np.isfinite(ladder.error_estimate)
     good = known & (ladder.error_estimate <= tolerance)
     answer.stiffness[at[known]] = ladder.stiffness[known]
+    answer.coupling[at[known]] = ladder.coupling[known]
     answer.error_estimate[at[known]] = ladder.error_estimate[known]
     answer.status[at[known]] = Status.tolerance_not_met
     answer.status[at[good]] = Status.ok

@@ -114,11 +114,14 @@ class Sweep:
         Bound of what a reduced basis added, same unit; zero where none was used.
     way
         `sweep.Way` of each point.
+    coupling
+        Force across the axis for a unit rotation of end plane j [N/rad]; NaN for other loads.
     """
 
     stiffness: FloatArray
     reduction_error: FloatArray
     way: NDArray[np.int8]
+    coupling: FloatArray
 
 
 class CellSolver:
@@ -179,10 +182,11 @@ class CellSolver:
         """Stiffness of many points; ``tolerance`` is what a reduction may add, relative."""
         offset = OFFSET * self._gap_ratio
         answers = [respond(o, materials, tolerance, offset) for o in self._operators]
-        stiffness = self._own(self._join([answer.matrix for answer in answers]))
+        joined = self._join([answer.matrix for answer in answers])
+        coupling = np.full(len(joined), np.nan) if joined.shape[1] == 1 else joined[:, 0, 1]
         errors = [a.error[:, :, None] * np.eye(a.error.shape[1]) for a in answers]
         way = np.max([answer.way for answer in answers], axis=0)
-        return Sweep(stiffness, self._own(self._join(errors)), way)
+        return Sweep(self._own(joined), self._own(self._join(errors)), way, coupling)
 
     def _join(self, responses: list[FloatArray]) -> FloatArray:
         return self._load.join(responses, self._length) if self._half else responses[0]
