@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import GEOMETRY, Cell
-from bondcell.errors import InputError, MissingLibrary, Violation
-from bondcell.outputs import PointResults
+from bondcell.errors import InputError, MissingLibrary, UnsupportedLoad, Violation
+from bondcell.outputs import PointResults, detail_names
 from bondcell.status import Status
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 IntArray = NDArray[np.int64]
 Progress = Callable[[int, int], None]
 Solver = Callable[..., "Reference"]
+
+DEFAULT_CONDITION = "roller"
+"""Boundary condition of the normal load when none is said."""
 
 
 def geometry_groups(cell: Cell) -> Iterator[IntArray]:
@@ -75,11 +78,13 @@ def solve_points(
     progress
         Called as ``progress(points_done, points)`` after each geometry.
     **options
-        ``bc`` and ``tolerance`` of the solver.
+        ``bc`` (of the normal load) and ``tolerance`` of the solver.
     """
+    _check_condition(load, options)
     _check_tolerance(options)
     points = cell.radius_i.size
     results = PointResults.empty(points)
+    details = {name: results.detail(name) for name in detail_names(load)}
     done = 0
     for group in geometry_groups(cell):
         try:
@@ -94,10 +99,19 @@ def solve_points(
             results.status[group] = answer.status
             results.dof[group] = answer.dof
             results.seconds[group] = answer.seconds
+            for name, found in details.items():
+                found[group] = getattr(answer, name)
         done += group.size
         if progress:
             progress(done, points)
     return results
+
+
+def _check_condition(load: str, options: Mapping[str, Any]) -> None:
+    """Only the normal load has a choice; the default may be said with any load."""
+    if load != "normal" and options.get("bc", DEFAULT_CONDITION) != DEFAULT_CONDITION:
+        allowed = f"left out for the load {load}: only the load normal has boundary conditions"
+        raise UnsupportedLoad([Violation("bc", options["bc"], allowed)])
 
 
 def _check_tolerance(options: Mapping[str, Any]) -> None:

@@ -39,18 +39,23 @@ def evaluate(
     model
         A name in ``bondcell.MODELS``.
     load
-        ``"normal"``; a model lists its loads in ``bondcell.MODELS[model].loads``.
+        ``"normal"``, ``"shear"``, ``"torsion"`` or ``"bending"``; a model lists those it covers in
+        ``bondcell.MODELS[model].loads``.
     **options
         Options of the model, see ``bondcell.MODELS[model].options``; for ``"fe"`` these are ``bc``
-        and ``tolerance``.
+        (of the normal load) and ``tolerance``.
 
     Returns
     -------
     xarray.Dataset
-        On the broadcast dimensions: ``stiffness`` [N m-1 for the normal load], ``error_estimate``
-        (relative numerical error of that value, not of the model), ``status`` (codes of
-        `bondcell.Status`), ``dof``, ``seconds`` (wall time per point), and the model's own springs
-        (``k_i``, ``k_int``, ``k_j``) if it has any. A failed point is NaN, ``status`` says why.
+        On the broadcast dimensions: ``stiffness`` [N m-1; N m rad-1 for torsion and bending],
+        ``error_estimate`` (relative numerical error of that value, not of the model), ``status``
+        (codes of `bondcell.Status`), ``dof``, ``seconds`` (wall time per point), and the model's
+        own springs (``k_i``, ``k_int``, ``k_j``) if it has any. The reference adds ``order``
+        (polynomial order of its finest solve), ``way`` (a flag: direct, reduced_basis),
+        ``reduction_error`` (the part of ``error_estimate`` that a reduced basis added) and, for
+        bending, ``coupling`` [N rad-1] (force across the axis for a unit rotation of end plane j).
+        A failed point is NaN, ``status`` says why.
 
     Raises
     ------
@@ -88,6 +93,8 @@ def evaluate(
         name: (dims, getattr(results, name).reshape(cell.shape), attributes[name])
         for name in OUTPUTS
     }
+    for name, detail in results.details.items():
+        variables[name] = (dims, detail.reshape(cell.shape), attributes[name])
     for name, part in parts.items():
         variables[name] = (dims, part, part_attributes(name, model, load))
     coords = {name: coord for name, coord in study.coords.items() if set(coord.dims) <= set(dims)}

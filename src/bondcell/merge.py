@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from bondcell.cell import FloatArray
 from bondcell.errors import DataError, Violation
 from bondcell.inputs import cell_from_study
-from bondcell.outputs import OUTPUTS, PointResults
+from bondcell.outputs import DETAILS, OUTPUTS, PointResults
 
 INDEX = "point_index"
 
@@ -52,6 +52,9 @@ def merge(
     for name in OUTPUTS if labels else ():
         values = getattr(canvas.results, name).reshape(-1, *cell.shape)
         merged[name] = (("model", *dims), values, canvas.attributes[name])
+    for name, detail in canvas.results.details.items():
+        values = detail.reshape(-1, *cell.shape)
+        merged[name] = (("model", *dims), values, canvas.attributes[name])
     for name in sorted(canvas.springs):
         values = canvas.springs[name].reshape(cell.shape)
         merged[name] = (dims, values, canvas.attributes[name])
@@ -76,7 +79,10 @@ class _Canvas:
             self.seen[row, where] += 1
             for name in OUTPUTS:
                 getattr(self.results, name)[row, where] = batch[name].sel(model=method).values
-        for name in sorted({str(name) for name in batch.data_vars} - {*OUTPUTS, INDEX}):
+            for name in DETAILS:
+                if name in batch:
+                    self.results.detail(name)[row, where] = batch[name].sel(model=method).values
+        for name in sorted({str(name) for name in batch.data_vars} - {*OUTPUTS, *DETAILS, INDEX}):
             whole = self.springs.setdefault(name, np.full(self.seen.shape[1], np.nan))
             whole[where] = batch[name].values
         for key, variable in batch.data_vars.items():

@@ -14,6 +14,12 @@ from bondcell.status import Status, cf_flag_attributes
 OUTPUTS = ("stiffness", "error_estimate", "status", "dof", "seconds")
 """Variables that every evaluation gives."""
 
+DETAILS = {"order": 0, "way": 2, "reduction_error": 0.0, "coupling": np.nan}
+"""Variables that only the finite element reference gives -> what stands for them elsewhere."""
+
+WAYS = ("direct", "reduced_basis", "closed_form")
+"""Meanings of the flag variable ``way``: how a value was found."""
+
 STIFFNESS_UNITS = {
     "normal": "N m-1",
     "shear": "N m-1",
@@ -39,6 +45,8 @@ class PointResults:
         Unknowns of the finest solve, 0 for a closed form.
     seconds
         Wall time spent on the point, its share of the geometry's assembly included [s].
+    details
+        Those of `DETAILS` that were found.
     failures
         One line for each geometry that failed.
     """
@@ -48,6 +56,7 @@ class PointResults:
     status: NDArray[np.int8]
     dof: NDArray[np.int64]
     seconds: FloatArray
+    details: dict[str, NDArray[Any]] = field(default_factory=dict)
     failures: list[str] = field(default_factory=list)
 
     @classmethod
@@ -61,9 +70,21 @@ class PointResults:
             seconds=np.full(shape, np.nan),
         )
 
+    def detail(self, name: str) -> NDArray[Any]:
+        """One of `DETAILS`; where it was not found, what stands for it."""
+        if name not in self.details:
+            kind = {"order": np.int64, "way": np.int8}.get(name, np.float64)
+            self.details[name] = np.full(self.stiffness.shape, DETAILS[name], dtype=kind)
+        return self.details[name]
+
+
+def detail_names(load: str) -> tuple[str, ...]:
+    """Those of `DETAILS` that the reference gives under a load."""
+    return tuple(name for name in DETAILS if name != "coupling" or load == "bending")
+
 
 def output_attributes(load: str) -> dict[str, dict[str, Any]]:
-    """CF attributes of each of `OUTPUTS` under a load."""
+    """CF attributes of each of `OUTPUTS` and `DETAILS` under a load."""
     return {
         "stiffness": {
             "units": STIFFNESS_UNITS[load],
@@ -74,6 +95,20 @@ def output_attributes(load: str) -> dict[str, dict[str, Any]]:
         "status": cf_flag_attributes(),
         "dof": {"units": "1", "long_name": "degrees of freedom"},
         "seconds": {"units": "s", "long_name": "wall time per point"},
+        "order": {"units": "1", "long_name": "polynomial order of the finest solve"},
+        "way": {
+            "long_name": "how the value was found",
+            "flag_values": np.arange(len(WAYS), dtype=np.int8),
+            "flag_meanings": " ".join(WAYS),
+        },
+        "reduction_error": {
+            "units": "1",
+            "long_name": "part of the error estimate that a reduced basis added",
+        },
+        "coupling": {
+            "units": "N rad-1",
+            "long_name": "force across the axis for a unit rotation of end plane j",
+        },
     }
 
 

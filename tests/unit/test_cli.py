@@ -91,6 +91,20 @@ def test_reference_agrees_with_the_known_value(capsys):
     assert found["error_estimate_kind"].startswith("discretisation")
 
 
+def test_rotations_have_their_own_unit(capsys):
+    assert main(stiffness("--model", "fe", "--load", "bending", tolerance="1e-4")) == 0
+    out, _ = capsys.readouterr()
+    assert re.search(r"^fe +[\d.]+ N m/rad ", out, re.MULTILINE)
+    assert re.search(r"^  coupling +-[\d.]+ N/rad", out, re.MULTILINE)
+    assert "load bending\n" in out
+    assert main(stiffness("--model", "fe", "--load", "torsion", "--json", tolerance="1e-3")) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["unit"] == "N m rad-1"
+    assert told["fe_options"] == {"tolerance": 1e-3}
+    assert told["results"][0]["way"] == "direct"
+    assert told["results"][0]["coupling"] is None
+
+
 def test_diverging_model_gives_no_value_and_says_so(capsys, monkeypatch):
     from dataclasses import replace
 
@@ -126,6 +140,11 @@ BAD = {
     "unknown model": (stiffness("--model", "fis"), "did you mean fsi?"),
     "unknown load": (stiffness(load="pull"), "--load = 'pull'"),
     "unknown bc": (stiffness("--model", "fe", bc="glued"), "--bc = 'glued'"),
+    "load that the model lacks": (stiffness("--load", "shear"), "for the model fsi one of normal"),
+    "bc of another load": (
+        stiffness("--model", "fe", "--load", "shear", bc="clamped"),
+        "concerns the load normal only",
+    ),
     "tolerance": (stiffness("--model", "fe", tolerance="-1"), "--tolerance = '-1'"),
     "tolerance text": (stiffness("--model", "fe", tolerance="fine"), "--tolerance = 'fine'"),
     "unknown option": (stiffness("--radios", "1"), "--radios"),
@@ -168,6 +187,7 @@ def test_suspicious_units_warn_but_work(capsys):
     err = capsys.readouterr().err
     assert "--radius = 7.5 m: beyond 1 m" in err
     assert "--young-matrix = 1.4 Pa: below 100 Pa" in err
+    assert len(err.splitlines()) == 2  # not again for the defaults that repeat the radius
 
 
 def test_option_of_the_reference_without_reference_warns(capsys):
@@ -268,6 +288,21 @@ def test_file_of_something_else(synthetic, tmp_path, capsys):
     path = write_dataset(synthetic.figure4[["gap"]], tmp_path / "other.nc")
     assert main(["show", str(path)]) == 2
     assert "stiffness(model, axes...)" in capsys.readouterr().err
+
+
+def test_result_without_numbers(synthetic, tmp_path, capsys):
+    study = synthetic.figure4
+    text = study.assign(stiffness=study.stiffness.astype(str))
+    path = write_dataset(text, tmp_path / "text.nc")
+    assert main(["show", str(path)]) == 2
+    assert "stiffness(model, axes...)" in capsys.readouterr().err
+
+
+def test_plot_where_nothing_can_be_written(result, tmp_path, capsys):
+    (tmp_path / "taken.png").mkdir()
+    assert main(["show", result, "--plot", str(tmp_path / "taken.png")]) == 2
+    assert "a file that can be written" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir() if path.suffix] == ["taken.png"]
 
 
 def test_terminal_that_cannot_print_greek():

@@ -12,6 +12,7 @@ from bondcell.cell import Cell
 from bondcell.evaluate import blocks, evaluate
 from bondcell.fem.reference import Reference
 from bondcell.models.model import Model, Springs
+from bondcell.outputs import DETAILS, WAYS
 from bondcell.status import Status
 
 MODULE = import_module("bondcell.evaluate")  # the attribute of the package is the function
@@ -42,6 +43,9 @@ def fake_reference(cell, load="normal", bc="roller", tolerance=1e-6):
         dof=np.full(count, 402),
         order=np.full(count, 4),
         seconds=np.full(count, 0.01),
+        way=np.zeros(count, dtype=np.int8),
+        coupling=np.full(count, -3.0 if load == "bending" else np.nan),
+        reduction_error=np.full(count, tolerance / 20),
     )
 
 
@@ -167,6 +171,41 @@ def test_reference_gets_points_of_one_geometry_at_a_time(fake_fem):
     assert (out.dof == 402).all()
 
 
+@pytest.mark.parametrize(
+    ("load", "unit"),
+    [("normal", "N m-1"), ("shear", "N m-1"), ("torsion", "N m rad-1"), ("bending", "N m rad-1")],
+)
+def test_reference_covers_every_load(fake_fem, load, unit):
+    out = evaluate(study(gap=("gap", [1e-4, 5e-4])), "fe", load=load)
+    assert out.stiffness.attrs["units"] == unit
+    assert load in out.stiffness.attrs["long_name"]
+    assert out.order.values.tolist() == [4, 4]
+    assert out.way.attrs["flag_meanings"].split()[int(out.way[0])] == "direct"
+    assert (out.reduction_error < out.error_estimate).all()
+    assert ("coupling" in out) == (load == "bending")
+    if load == "bending":
+        assert out.coupling.values.tolist() == [-3.0, -3.0]
+        assert out.coupling.attrs["units"] == "N rad-1"
+
+
+def test_ways_are_those_of_the_finite_elements():
+    from bondcell.fem.sweep import Way
+
+    assert list(WAYS[: len(Way)]) == [way.name for way in Way]
+
+
+def test_models_know_nothing_of_orders_and_ways():
+    assert not {*DETAILS} & {*evaluate(study()).data_vars}
+
+
+def test_bending_for_real():
+    """The coupling of a symmetric pair is its shear stiffness times half its length."""
+    shear, bending = (evaluate(study(), "fe", load=load) for load in ("shear", "bending"))
+    half_length = 7.5e-3 + 2.5e-4
+    assert abs(float(bending.coupling)) == pytest.approx(float(shear.stiffness) * half_length, 1e-5)
+    assert {int(out.status) for out in (shear, bending)} == {Status.ok}
+
+
 def test_failed_geometries_are_flagged_and_the_rest_goes_on(fake_fem):
     swept = study(gap=("gap", [1e-4, 2e-4, 3e-4, 4e-4]), young_m=("young", [1e6, 2e6]))
     with pytest.warns(RuntimeWarning, match="gap=0.000") as warned:
@@ -206,6 +245,13 @@ def violations(error):
         ({"bc": "roller"}, bondcell.InputError, [("bc", "roller")]),
         ({"a": 1, "b": 2}, bondcell.InputError, [("a", 1), ("b", 2)]),
         ({"model": "fe", "bc": "glued"}, bondcell.UnsupportedLoad, [("bc", "glued")]),
+        ({"model": "fe", "load": "twist"}, bondcell.UnsupportedLoad, [("load", "twist")]),
+        ({"load": "shear"}, bondcell.UnsupportedLoad, [("load", "shear")]),
+        (
+            {"model": "fe", "load": "shear", "bc": "clamped"},
+            bondcell.UnsupportedLoad,
+            [("bc", "clamped")],
+        ),
         ({"model": "fe", "tolerance": -1.0}, bondcell.InputError, [("tolerance", -1.0)]),
         ({"model": "fe", "tolerance": "low"}, bondcell.InputError, [("tolerance", "low")]),
     ],

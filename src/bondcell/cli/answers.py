@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -13,6 +14,7 @@ import numpy as np
 from bondcell.cell import Cell
 from bondcell.models import MODELS
 from bondcell.models.model import Model, Springs
+from bondcell.outputs import WAYS
 from bondcell.status import Status
 
 REPEATS = 5
@@ -28,7 +30,7 @@ class Answer:
     model
         Name in ``bondcell.MODELS``.
     stiffness
-        Stiffness [N/m for the normal load], NaN without a value.
+        Stiffness [N/m; N m/rad for torsion and bending], NaN without a value.
     error_estimate
         Relative numerical error of that value.
     error_kind
@@ -41,6 +43,11 @@ class Answer:
         Unknowns, 0 for a closed form.
     parts
         The model's own springs.
+    order, way
+        Polynomial order of the finest solve and how it was done; 0 and nothing for a closed form.
+    coupling
+        Force across the axis for a unit rotation of end plane j, of the reference under bending
+        [N/rad]; else NaN.
     """
 
     model: str
@@ -51,6 +58,9 @@ class Answer:
     seconds: float
     dof: int = 0
     parts: Mapping[str, float] = field(default_factory=dict)
+    order: int = 0
+    way: str = ""
+    coupling: float = math.nan
 
 
 def answer(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Answer:
@@ -84,6 +94,9 @@ def _solved(cell: Cell, name: str, load: str, options: Mapping[str, Any]) -> Ans
         status=Status(int(found.status[0])),
         seconds=float(found.seconds[0]),
         dof=int(found.dof[0]),
+        order=int(found.detail("order")[0]),
+        way=WAYS[int(found.detail("way")[0])],
+        coupling=float(found.detail("coupling")[0]),
     )
 
 

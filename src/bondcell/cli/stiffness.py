@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from bondcell.cell import Cell
     from bondcell.cli.answers import Answer
 
+LOADS = ("normal", "shear", "torsion", "bending")
+"""Loads; not every model covers all of them."""
+
 CONDITIONS = ("roller", "clamped", "confined")
 """Boundary conditions of the reference."""
 
@@ -55,11 +58,14 @@ def add_to(commands: Commands) -> None:
         metavar="NAME",
         help="a model, see `bondcell models`; may be repeated (default: fsi)",
     )
-    group.add_argument("--load", default="normal", metavar="NAME", help="default: normal")
+    group.add_argument(
+        "--load", default="normal", metavar="NAME", help=f"{', '.join(LOADS)} (default: normal)"
+    )
     group.add_argument(
         "--bc",
         metavar="NAME",
-        help=f"end planes and sides for the model fe: {', '.join(CONDITIONS)} (default: roller)",
+        help="end planes and sides for the model fe under the normal load: "
+        f"{', '.join(CONDITIONS)} (default: roller)",
     )
     group.add_argument(
         "--tolerance", metavar="VALUE", help="relative error for the model fe (default: 1e-6)"
@@ -112,6 +118,8 @@ def _reference_options(arguments: argparse.Namespace) -> tuple[dict[str, Any], l
     violations = []
     if bc not in CONDITIONS:
         violations.append(Violation("--bc", bc, f"one of {', '.join(CONDITIONS)}"))
+    elif arguments.bc and arguments.load != "normal":
+        violations.append(Violation("--bc", bc, "left out: it concerns the load normal only"))
     if arguments.tolerance is not None:
         low, high = TOLERANCES
         try:
@@ -148,7 +156,8 @@ def _print_table(cell: Cell, answers: list[Answer], load: str, options: dict[str
     unit = unit_text(STIFFNESS_UNITS[load])
     given = {name: float(values) for name, values in cell.as_dict().items()}
     print(", ".join(at(name, value, UNITS[name]) for name, value in given.items()))
-    condition = f", fe with bc {options['bc']}" if any(a.model == "fe" for a in answers) else ""
+    with_bc = load == "normal" and any(a.model == "fe" for a in answers)
+    condition = f", fe with bc {options['bc']}" if with_bc else ""
     print(f"load {load}{condition}\n")
     rows = []
     for found in answers:
@@ -159,6 +168,8 @@ def _print_table(cell: Cell, answers: list[Answer], load: str, options: dict[str
         rows.append([found.model, value, error + kind, found.status.name, time])
         for part, spring in found.parts.items():
             rows.append([f"  {part}", f"{spring:.{DIGITS}g} {unit}", "", "", ""])
+        if math.isfinite(found.coupling):
+            rows.append(["  coupling", f"{found.coupling:.{DIGITS}g} N/rad", "", "", ""])
     print(text_table(rows, ["model", "stiffness", "relative error estimate", "status", "time"]))
     print(f"\n{EXPLANATION}")
 
@@ -173,7 +184,7 @@ def _document(
         "load": load,
         "unit": STIFFNESS_UNITS[load],
         "inputs": inputs,
-        "fe_options": options if any(found.model == "fe" for found in answers) else None,
+        "fe_options": _fe_options(load, options) if any(a.model == "fe" for a in answers) else None,
         "results": [
             {
                 "model": found.model,
@@ -183,11 +194,18 @@ def _document(
                 "status": found.status.name,
                 "seconds": _json_number(found.seconds),
                 "dof": found.dof,
+                "order": found.order,
+                "way": found.way or None,
+                "coupling": _json_number(found.coupling),
                 "parts": {name: _json_number(part) for name, part in found.parts.items()},
             }
             for found in answers
         ],
     }
+
+
+def _fe_options(load: str, options: dict[str, Any]) -> dict[str, Any]:
+    return options if load == "normal" else {"tolerance": options["tolerance"]}
 
 
 def _json_number(value: float) -> float | str | None:
