@@ -1,0 +1,1 @@
+"""The same cell solved by other codes."""
