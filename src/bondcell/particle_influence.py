@@ -47,8 +47,10 @@ def particles_negligible_from(study: xr.Dataset, tolerance: float = 0.01) -> pd.
     Notes
     -----
     By FSI the interface-only stiffness is k_int. By finite elements it is that of rigid particles,
-    ``K = E_m lim(K/E_m)``, the limit taken at the largest ratio swept. Deviations fall as E_m/E_i,
-    so they are interpolated as straight lines in log-log.
+    ``K = E_m lim(K/E_m)``, the limit taken at the largest ratio swept. Small deviations d fall as
+    E_m/E_i, so the ratio is interpolated on straight lines in log-log. At the paper's ratio they
+    are not small: there it is d/(1 - d), the particles' compliance over the interface's, which
+    falls as E_m/E_i throughout when the two are in series.
     """
     axes = [axis for axis in swept_axes(study) if axis != RATIO_AXIS]
     columns = ["method", *axes, "ratio_from", "deviation_at_paper_ratio", "largest_ratio"]
@@ -67,7 +69,7 @@ def particles_negligible_from(study: xr.Dataset, tolerance: float = 0.01) -> pd.
                     "method": method,
                     **at,
                     "ratio_from": found if found <= bound else np.nan,
-                    "deviation_at_paper_ratio": _log_interpolated(ratio, values, PAPER_RATIO),
+                    "deviation_at_paper_ratio": _deviation_at(PAPER_RATIO, ratio, values),
                     "largest_ratio": largest,
                 }
             )
@@ -134,8 +136,10 @@ def _lines(deviation: xr.DataArray) -> list[tuple[dict[str, Any], FloatArray]]:
     return lines
 
 
-def _log_interpolated(ratio: FloatArray, deviation: FloatArray, at: float) -> float:
-    good = np.isfinite(deviation) & (deviation > 0)
-    if good.sum() < 2 or not ratio[good][0] <= at <= ratio[good][-1]:
+def _deviation_at(wanted: float, ratio: FloatArray, deviation: FloatArray) -> float:
+    good = np.isfinite(deviation) & (deviation > 0) & (deviation < 1)
+    if good.sum() < 2 or not ratio[good][0] <= wanted <= ratio[good][-1]:
         return float("nan")
-    return float(np.exp(np.interp(np.log(at), np.log(ratio[good]), np.log(deviation[good]))))
+    compliance = deviation[good] / (1.0 - deviation[good])
+    at = float(np.exp(np.interp(np.log(wanted), np.log(ratio[good]), np.log(compliance))))
+    return at / (1.0 + at)

@@ -103,7 +103,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
         yield temporary
         os.replace(temporary, target)
     finally:
-        temporary.unlink(missing_ok=True)
+        if temporary.exists():  # a read-only folder refuses to delete even what is not there
+            temporary.unlink()
 
 
 def _write_group(dataset: xr.Dataset, path: Path, group: str | None) -> None:

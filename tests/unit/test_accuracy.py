@@ -122,7 +122,7 @@ def test_ratio_from_which_particles_do_not_matter(synthetic):
     fsi = rows(table, method="fsi")
     assert fsi.ratio_from.tolist() == pytest.approx([99 * share] * 2, rel=2e-3)
     assert fsi.deviation_at_paper_ratio.tolist() == pytest.approx(
-        [share / (12 + share)] * 2, rel=2e-2
+        [share / (12 + share)] * 2, rel=1e-9
     )
     fe = rows(table, method="fe")
     assert fe.ratio_from.tolist() == pytest.approx([99 * share * 1.04, 99 * share * 1.94], rel=5e-3)

@@ -190,7 +190,7 @@ def test_particles_and_losses(synthetic):
     text = said(synthetic.figure4)
     assert "by FSI from E_i/E_m = 250 on" in text
     assert "by finite elements from E_i/E_m = 260 (ν_m = 0) and 490 (ν_m = 0.46) on" in text
-    assert "there K_n is still 17 % (FSI) and 18 % to 29 % (finite elements) below" in text
+    assert "there K_n is still 18 % (FSI) and 18 % to 29 % (finite elements) below" in text
     assert "cementation at 25 (diverges)" in text
 
 

@@ -6,6 +6,7 @@ import argparse
 
 from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell
 from bondcell.errors import InputError, Violation
+from bondcell.likely_units import unlikely
 from bondcell.quantities import EXAMPLES, NotAllowed, parse_quantity
 
 OPTIONS = {
@@ -31,12 +32,6 @@ _DEFAULTS = {
 
 _NEUTRAL = {name: 0.0 if unit == "1" else 1.0 for name, unit in UNITS.items()}
 """Stands in for what is missing or unreadable, so that the rest is checked as well."""
-
-LARGEST_LIKELY_LENGTH = 1.0
-"""Beyond this a bare length was probably meant in millimetres [m]."""
-
-SMALLEST_LIKELY_MODULUS = 100.0
-"""Below this a bare modulus was probably meant in megapascals [Pa]."""
 
 
 def add_cell_options(parser: argparse.ArgumentParser) -> None:
@@ -81,17 +76,12 @@ def read_cell(arguments: argparse.Namespace) -> tuple[Cell | None, list[Violatio
 
 def unit_warnings(cell: Cell) -> list[str]:
     """Values that are allowed, but whose unit was probably forgotten."""
-    found = []
-    for name, values in cell.as_dict().items():
-        value, unit = float(values), UNITS[name]
-        if unit == "m" and value > LARGEST_LIKELY_LENGTH:
-            hint = "beyond 1 m; were millimetres meant ('7.5 mm')?"
-        elif unit == "Pa" and value < SMALLEST_LIKELY_MODULUS:
-            hint = "below 100 Pa; were megapascals meant ('1.4 MPa')?"
-        else:
-            continue
-        found.append(f"{OPTIONS[name]} = {value:g} {unit}: {hint}")
-    return found
+    found: dict[str, str] = {}
+    for name in OPTIONS:
+        oddity = unlikely(name, getattr(cell, name))
+        if oddity:  # a default repeats the value of another option: told once
+            found.setdefault(oddity, f"{OPTIONS[name]} = {oddity}")
+    return list(found.values())
 
 
 def _range_violations(values: dict[str, float]) -> dict[str, Violation]:

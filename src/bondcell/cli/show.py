@@ -53,7 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
 def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> None:
     from bondcell.result_view import model_names
 
-    if not model_names(study) and ladders is None:
+    stiffness = study.get("stiffness")
+    numeric = stiffness is None or stiffness.dtype.kind in "iuf"
+    if not numeric or not (model_names(study) or ladders is not None):
         allowed = "a result of this package: stiffness(model, axes...), or a group convergence"
         raise DataError([Violation("file", path, allowed)], path)
 
@@ -226,6 +228,10 @@ def _draw(study: xr.Dataset, arguments: argparse.Namespace) -> None:
     with drawing_style():
         drawing = draw_curves(study, x=arguments.x) if swept_axes(study) else draw_bars(study)
         suffix = Path(arguments.plot).suffix.lower().removeprefix(".")
-        with replacing(arguments.plot) as temporary:
-            drawing.figure.savefig(temporary, format=suffix)
+        try:
+            with replacing(arguments.plot) as temporary:
+                drawing.figure.savefig(temporary, format=suffix)
+        except OSError as error:
+            allowed = f"a file that can be written ({error.strerror or error})"
+            raise InputError([Violation("--plot", arguments.plot, allowed)]) from error
     print(f"\ndrawn: {arguments.plot}")

@@ -92,7 +92,7 @@ def film_core(cell: Cell) -> tuple[FloatArray, FloatArray]:
 def _checked(ratio: float) -> float:
     number = isinstance(ratio, int | float | np.number) and not isinstance(ratio, bool)
     if not number or not 0.0 < ratio <= 1.0:
-        raise InputError([Violation("core_radius_ratio", ratio, "(0, 1], or None for the film's")])
+        raise InputError([Violation("core_radius_ratio", ratio, "(0, 1], or None for the default")])
     return float(ratio)
 
 

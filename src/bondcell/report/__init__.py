@@ -130,8 +130,8 @@ def _models(sections: Iterable[Section]) -> list[dict[str, str]]:
     ]
 
 
-_INPUT = re.compile(rf"\b({'|'.join(SYMBOLS)})\b")
-"""Names of inputs, which only those who use the package know."""
+_INPUT = re.compile(rf"\b({'|'.join(name for name in SYMBOLS if '_' in name)})\b")
+"""Names of inputs that only those who use the package know; gap and time are words as well."""
 
 
 def _input_symbol(match: re.Match[str]) -> str:
