@@ -235,7 +235,8 @@ class ReducedBasis:
         count = points.compressibility.size
         chosen = np.unique(np.linspace(0, count - 1, min(count, TRAINING)).astype(int))
         training = points.take(chosen)
-        start, last, worst = self.size, -1, 0
+        # Soft particles move their interface most; a rigid one would give nothing to start from.
+        start, last, worst = self.size, -1, int(training.ratios.min(axis=1).argmin())
         if self._spanned:
             worst = self._worst(training)[0]
         while self.size < LARGEST_BASIS and worst != last:
@@ -309,10 +310,11 @@ class ReducedBasis:
         weights = self._matrix.weights(points.compressibility)
         finite = np.where(np.isfinite(points.ratios), points.ratios, 0.0)
         n, m = self.size, self._operators.motions
-        system = (weights @ self._reduced.reshape(len(self._reduced), -1)).reshape(-1, n, n)
+        nodes, count = len(self._reduced), len(weights)
+        system = (weights @ self._reduced.reshape(nodes, n * n)).reshape(count, n, n)
         for k, reduced in enumerate(self._reduced_particles):
             system += finite[:, k, None, None] * reduced
-        right = (weights @ self._reduced_coupling.reshape(len(self._reduced), -1)).reshape(-1, n, m)
+        right = (weights @ self._reduced_coupling.reshape(nodes, n * m)).reshape(count, n, m)
         self._fix_rigid(system, right, points.ratios)
         solution = np.linalg.solve(system, right)
         own = np.tensordot(weights, self._matrix.own, 1)
@@ -334,9 +336,9 @@ class ReducedBasis:
         self, points: Points, weights: FloatArray, finite: FloatArray, solution: FloatArray
     ) -> FloatArray:
         moving = self._operators.is_displacement
-        count, _, m = solution.shape
-        spread = (weights[:, :, None, None] * solution[:, None]).reshape(count, -1, m)
-        applied = self._applied[:, moving].transpose(1, 0, 2).reshape(moving.sum(), -1)
+        (count, n, m), nodes = solution.shape, weights.shape[1]
+        spread = (weights[:, :, None, None] * solution[:, None]).reshape(count, nodes * n, m)
+        applied = self._applied[:, moving].transpose(1, 0, 2).reshape(moving.sum(), nodes * n)
         coupling = np.tensordot(weights, self._matrix.coupling[:, moving], 1)
         residual = coupling - np.matmul(applied, spread)
         for k, own in enumerate(self._applied_particles):
