@@ -78,7 +78,7 @@ def sum_products(coefficients: FloatArray, order: int) -> FloatArray:
         collected = np.stack([coefficients[k, m] for k, m in kinds_of(pair)], axis=1)
         half.append(table @ collected.reshape(batch, -1, count))
     both = np.concatenate(half, axis=2).reshape(-1, along_y.shape[0]) @ along_y
-    return np.asarray(both.reshape(batch, -1)[:, place])
+    return both.reshape(batch, -1).take(place, axis=1, mode="clip")
 
 
 def sum_shapes(coefficients: FloatArray, tables: LineTables) -> FloatArray:
