@@ -12,6 +12,12 @@ from numpy.typing import NDArray
 from bondcell.cell import GEOMETRY, Cell
 from bondcell.errors import InputError, MissingLibrary, UnsupportedLoad, Violation
 from bondcell.outputs import PointResults, detail_names
+from bondcell.reference_options import (
+    BOUNDARY_CONDITIONS,
+    DEFAULT_TOLERANCE,
+    TOLERANCE_RANGE,
+    TOLERANCES,
+)
 from bondcell.status import Status
 
 if TYPE_CHECKING:
@@ -21,7 +27,7 @@ IntArray = NDArray[np.int64]
 Progress = Callable[[int, int], None]
 Solver = Callable[..., "Reference"]
 
-DEFAULT_CONDITION = "roller"
+DEFAULT_CONDITION = BOUNDARY_CONDITIONS[0]
 """Boundary condition of the normal load when none is said."""
 
 
@@ -109,15 +115,20 @@ def solve_points(
 
 def _check_condition(load: str, options: Mapping[str, Any]) -> None:
     """Only the normal load has a choice; the default may be said with any load."""
-    if load != "normal" and options.get("bc", DEFAULT_CONDITION) != DEFAULT_CONDITION:
+    condition = options.get("bc", DEFAULT_CONDITION)
+    if condition not in BOUNDARY_CONDITIONS:
+        allowed = f"one of {', '.join(BOUNDARY_CONDITIONS)}"
+        raise UnsupportedLoad([Violation("bc", condition, allowed)])
+    if load != "normal" and condition != DEFAULT_CONDITION:
         allowed = f"left out for the load {load}: only the load normal has boundary conditions"
-        raise UnsupportedLoad([Violation("bc", options["bc"], allowed)])
+        raise UnsupportedLoad([Violation("bc", condition, allowed)])
 
 
 def _check_tolerance(options: Mapping[str, Any]) -> None:
-    tolerance = options.get("tolerance", 1e-6)
-    if not isinstance(tolerance, (int, float)) or not 0 < tolerance < 1:
-        raise InputError([Violation("tolerance", tolerance, "a number in (0, 1)")])
+    tolerance = options.get("tolerance", DEFAULT_TOLERANCE)
+    number = isinstance(tolerance, (int, float, np.number)) and not isinstance(tolerance, bool)
+    if not number or not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
+        raise InputError([Violation("tolerance", tolerance, TOLERANCE_RANGE)])
 
 
 def _record_failure(results: PointResults, cell: Cell, group: IntArray, error: Exception) -> None:

@@ -14,9 +14,9 @@ from bondcell.cell import Cell, FloatArray
 from bondcell.errors import InputError, UnknownModel, UnsupportedLoad, Violation
 from bondcell.inputs import cell_from_study
 from bondcell.models import MODELS
+from bondcell.models.asked import ask
 from bondcell.models.model import Model
 from bondcell.outputs import OUTPUTS, PointResults, output_attributes, part_attributes
-from bondcell.status import Status
 
 CHUNK = 200_000
 """Points given to an analytic model at once: bounds the memory of its intermediate arrays."""
@@ -97,6 +97,10 @@ def evaluate(
         variables[name] = (dims, detail.reshape(cell.shape), attributes[name])
     for name, part in parts.items():
         variables[name] = (dims, part, part_attributes(name, model, load))
+    taken = [name for name in variables if name in study.coords]
+    if taken:
+        allowed = "a coordinate by another name: this one is a result's"
+        raise InputError([Violation(name, "coordinate", allowed) for name in taken])
     coords = {name: coord for name, coord in study.coords.items() if set(coord.dims) <= set(dims)}
     return xr.Dataset(variables, coords, {"model": model, "load": load, **options})
 
@@ -149,23 +153,15 @@ def _evaluate_analytic(
     model: Model, load: str, cell: Cell, options: Mapping[str, Any]
 ) -> tuple[PointResults, Parts]:
     results, parts = PointResults.empty(cell.shape), Parts()
-    outside = np.empty(cell.shape, dtype=bool)
     start = time.perf_counter()
     for block in blocks(cell.shape, CHUNK):
         piece = _cut(cell, block)
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            springs = model.loads[load](piece, **options)
+        springs, results.status[block] = ask(model, load, piece, **options)
         results.stiffness[block] = springs.stiffness
         results.error_estimate[block] = springs.relative_error
-        outside[block] = ~model.is_valid(piece)
         for name, part in springs.parts.items():
             parts.setdefault(name, np.empty(cell.shape))[block] = part
     results.seconds[...] = (time.perf_counter() - start) / results.seconds.size
-    results.status[...] = np.where(outside, Status.outside_valid_range, Status.ok)
-    diverges = ~np.isfinite(results.stiffness)
-    results.status[diverges] = Status.diverges
-    results.stiffness[diverges] = np.nan
-    results.error_estimate[diverges] = np.nan
     return results, parts
 
 

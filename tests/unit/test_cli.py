@@ -140,7 +140,7 @@ BAD = {
     "unknown model": (stiffness("--model", "fis"), "did you mean fsi?"),
     "unknown load": (stiffness(load="pull"), "--load = 'pull'"),
     "unknown bc": (stiffness("--model", "fe", bc="glued"), "--bc = 'glued'"),
-    "load that the model lacks": (stiffness("--load", "shear"), "for the model fsi one of normal"),
+    "load that the model lacks": (stiffness("--load", "shear"), "one of normal for the model fsi"),
     "bc of another load": (
         stiffness("--model", "fe", "--load", "shear", bc="clamped"),
         "concerns the load normal only",

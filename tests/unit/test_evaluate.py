@@ -110,6 +110,19 @@ def test_result_describes_itself():
     assert out.attrs == {"model": "fsi", "load": "normal"}
 
 
+def test_coordinate_by_the_name_of_a_result():
+    taken = study(gap=("status", [1e-4, 1e-3])).assign_coords(status=[1, 2])
+    with pytest.raises(bondcell.InputError, match="status = 'coordinate'"):
+        evaluate(taken)
+
+
+def test_boundary_conditions_are_those_of_the_reference():
+    from bondcell.fem.supports import NORMAL
+    from bondcell.reference_options import BOUNDARY_CONDITIONS
+
+    assert tuple(NORMAL) == BOUNDARY_CONDITIONS
+
+
 def test_study_is_not_changed():
     given = study(gap=("gap", [1e-4, 1e-3]))
     before = given.copy(deep=True)
@@ -254,6 +267,8 @@ def violations(error):
         ),
         ({"model": "fe", "tolerance": -1.0}, bondcell.InputError, [("tolerance", -1.0)]),
         ({"model": "fe", "tolerance": "low"}, bondcell.InputError, [("tolerance", "low")]),
+        ({"model": "fe", "tolerance": 0.5}, bondcell.InputError, [("tolerance", 0.5)]),
+        ({"model": "fe", "bc": ["roller"]}, bondcell.UnsupportedLoad, [("bc", ["roller"])]),
     ],
 )
 def test_wrong_arguments_are_named(arguments, kind, expected):

@@ -9,11 +9,10 @@ from dataclasses import dataclass, field
 from statistics import median
 from typing import Any
 
-import numpy as np
-
 from bondcell.cell import Cell
 from bondcell.models import MODELS
-from bondcell.models.model import Model, Springs
+from bondcell.models.asked import ask
+from bondcell.models.model import Model
 from bondcell.outputs import WAYS
 from bondcell.status import Status
 
@@ -104,23 +103,14 @@ def _closed(cell: Cell, model: Model, load: str) -> Answer:
     seconds = []
     for _ in range(REPEATS):
         start = time.perf_counter()
-        with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-            springs = model.loads[load](cell)
+        springs, status = ask(model, load, cell)
         seconds.append(time.perf_counter() - start)
-    stiffness = float(springs.stiffness)
-    good = np.isfinite(stiffness)
     return Answer(
         model=model.name,
-        stiffness=stiffness if good else float("nan"),
-        error_estimate=float(np.asarray(springs.relative_error)) if good else float("nan"),
+        stiffness=float(springs.stiffness),
+        error_estimate=float(springs.relative_error),
         error_kind="evaluation of the formula",
-        status=_status(model, cell, springs),
+        status=Status(int(status)),
         seconds=median(seconds),
         parts={name: float(part) for name, part in springs.parts.items()},
     )
-
-
-def _status(model: Model, cell: Cell, springs: Springs) -> Status:
-    if not np.isfinite(springs.stiffness):
-        return Status.diverges
-    return Status.ok if np.all(model.is_valid(cell)) else Status.outside_valid_range

@@ -11,6 +11,12 @@ from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any
 
 from bondcell.errors import InputError, Violation
+from bondcell.reference_options import (
+    BOUNDARY_CONDITIONS,
+    DEFAULT_TOLERANCE,
+    TOLERANCE_RANGE,
+    TOLERANCES,
+)
 
 if TYPE_CHECKING:
     from bondcell.cell import Cell
@@ -18,12 +24,6 @@ if TYPE_CHECKING:
 
 LOADS = ("normal", "shear", "torsion", "bending")
 """Loads; not every model covers all of them."""
-
-CONDITIONS = ("roller", "clamped", "confined")
-"""Boundary conditions of the reference."""
-
-TOLERANCES = (1e-12, 0.1)
-"""Relative tolerances that may be asked of the reference."""
 
 DIGITS = 10
 """Significant digits of a printed stiffness."""
@@ -65,10 +65,12 @@ def add_to(commands: Commands) -> None:
         "--bc",
         metavar="NAME",
         help="end planes and sides for the model fe under the normal load: "
-        f"{', '.join(CONDITIONS)} (default: roller)",
+        f"{', '.join(BOUNDARY_CONDITIONS)} (default: {BOUNDARY_CONDITIONS[0]})",
     )
     group.add_argument(
-        "--tolerance", metavar="VALUE", help="relative error for the model fe (default: 1e-6)"
+        "--tolerance",
+        metavar="VALUE",
+        help=f"relative error for the model fe (default: {DEFAULT_TOLERANCE:g})",
     )
     parser.add_argument("--json", action="store_true", help="print JSON, for programs")
 
@@ -107,28 +109,26 @@ def _model_violations(models: list[str], load: str) -> list[Violation]:
             violations.append(Violation("--model", name, f"one of {', '.join(MODELS)}{hint}"))
         elif load not in MODELS[name].loads:
             able = ", ".join(MODELS[name].loads)
-            violations.append(Violation("--load", load, f"for the model {name} one of {able}"))
+            violations.append(Violation("--load", load, f"one of {able} for the model {name}"))
     return violations
 
 
 def _reference_options(arguments: argparse.Namespace) -> tuple[dict[str, Any], list[Violation]]:
     from bondcell.quantities import NotAllowed, parse_quantity
 
-    bc, tolerance = arguments.bc or "roller", 1e-6
+    bc, tolerance = arguments.bc or BOUNDARY_CONDITIONS[0], DEFAULT_TOLERANCE
     violations = []
-    if bc not in CONDITIONS:
-        violations.append(Violation("--bc", bc, f"one of {', '.join(CONDITIONS)}"))
+    if bc not in BOUNDARY_CONDITIONS:
+        violations.append(Violation("--bc", bc, f"one of {', '.join(BOUNDARY_CONDITIONS)}"))
     elif arguments.bc and arguments.load != "normal":
         violations.append(Violation("--bc", bc, "left out: it concerns the load normal only"))
     if arguments.tolerance is not None:
-        low, high = TOLERANCES
         try:
             tolerance = parse_quantity(arguments.tolerance)
         except NotAllowed:
             tolerance = math.nan
-        if not low <= tolerance <= high:
-            allowed = f"a number in [{low:g}, {high:g}]"
-            violations.append(Violation("--tolerance", arguments.tolerance, allowed))
+        if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
+            violations.append(Violation("--tolerance", arguments.tolerance, TOLERANCE_RANGE))
     return {"bc": bc, "tolerance": tolerance}, violations
 
 
