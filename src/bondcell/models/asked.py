@@ -32,8 +32,8 @@ def ask(model: Model, load: str, cell: Cell, **options: Any) -> tuple[Springs, N
     Springs
         The model's answer; stiffness and error are NaN where the stiffness is no finite number.
     numpy.ndarray
-        `Status` codes of the cell's shape: ``diverges`` there, else ``outside_valid_range`` or
-        ``ok``.
+        `Status` codes of the cell's shape: ``diverges`` there, or ``not_computed`` where a model
+        has no value outside its valid range; else ``outside_valid_range`` or ``ok``.
 
     Examples
     --------
@@ -52,13 +52,16 @@ def ask(model: Model, load: str, cell: Cell, **options: Any) -> tuple[Springs, N
     """
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         springs = model.loads[load](cell, **options)
-    status = np.where(model.is_valid(cell), Status.ok, Status.outside_valid_range).astype(np.int8)
-    diverges = ~np.isfinite(springs.stiffness)
-    if not np.any(diverges):
+    outside = ~model.is_valid(cell)
+    status = np.where(outside, Status.outside_valid_range, Status.ok).astype(np.int8)
+    missing = ~np.isfinite(springs.stiffness)
+    if not np.any(missing):
         return springs, status
     known = replace(
         springs,
-        stiffness=np.where(diverges, np.nan, springs.stiffness),
-        relative_error=np.where(diverges, np.nan, springs.relative_error),
+        stiffness=np.where(missing, np.nan, springs.stiffness),
+        relative_error=np.where(missing, np.nan, springs.relative_error),
     )
-    return known, np.where(diverges, np.int8(Status.diverges), status)
+    silent = np.isnan(springs.stiffness) & outside
+    reason = np.where(silent, Status.not_computed, Status.diverges).astype(np.int8)
+    return known, np.where(missing, reason, status)
