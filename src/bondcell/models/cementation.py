@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.errors import InputError, Violation
 from bondcell.models.elastic_foundation import RELATIVE_ERROR, compliance_factor
-from bondcell.models.model import Model, Springs
+from bondcell.models.model import Model, Springs, radius_ratio
 
 LARGEST_GAP_RATIO = 0.1
 """L_g / min(R_i, R_j) up to which the layer counts as thin."""
@@ -65,7 +64,7 @@ def normal(cell: Cell, cement_radius_ratio: float = 1.0) -> Springs:
     >>> normal(cell).stiffness.round(-2)
     array([ 91400., 421700.,     inf])
     """
-    ratio = _checked(cement_radius_ratio)
+    ratio = radius_ratio("cement_radius_ratio", cement_radius_ratio)
     radius = ratio * np.minimum(cell.radius_i, cell.radius_j)
     curvature = 1.0 / (1.0 / cell.radius_i + 1.0 / cell.radius_j)
     modulus = oedometric_modulus(cell.young_m, cell.poisson_m)
@@ -89,13 +88,6 @@ def is_thin_cement(cell: Cell) -> NDArray[np.bool_]:
     thin = cell.gap <= LARGEST_GAP_RATIO * np.minimum(cell.radius_i, cell.radius_j)
     soft = cell.young_m <= LARGEST_MODULUS_RATIO * np.minimum(cell.young_i, cell.young_j)
     return np.broadcast_to(thin & soft & (cell.poisson_m <= LARGEST_POISSON), cell.shape)
-
-
-def _checked(ratio: float) -> float:
-    number = isinstance(ratio, int | float | np.number) and not isinstance(ratio, bool)
-    if not number or not 0.0 < ratio <= 1.0:
-        raise InputError([Violation("cement_radius_ratio", ratio, "(0, 1]")])
-    return float(ratio)
 
 
 CEMENTATION = Model(

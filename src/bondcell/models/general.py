@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.errors import InputError, Violation
 from bondcell.models.columns import Columns, annulus
 from bondcell.models.fsi import matrix_is_weaker
-from bondcell.models.model import Model, Springs, in_series
+from bondcell.models.model import Model, Springs, in_series, radius_ratio
 
 RELATIVE_ERROR = 2e-14
 """Bound of round-off and quadrature, see tests/verification/test_models_mpmath.py."""
@@ -50,7 +49,8 @@ def normal(cell: Cell, core_radius_ratio: float | None = None) -> Springs:
     if core_radius_ratio is None:
         square, complement = film_core(cell)
     else:
-        ratio = np.asarray(_checked(core_radius_ratio))
+        or_none = ", or None for the default"
+        ratio = np.asarray(radius_ratio("core_radius_ratio", core_radius_ratio, or_none))
         square, complement = ratio**2, (1.0 - ratio) * (1.0 + ratio)
     core_square = square * np.minimum(cell.radius_i, cell.radius_j) ** 2
     lines = Columns.outside(cell, square, complement)
@@ -87,13 +87,6 @@ def film_core(cell: Cell) -> tuple[FloatArray, FloatArray]:
     small = np.minimum(cell.radius_i, cell.radius_j)
     doubling = 2.0 * large / (large + small) * (cell.gap / small)
     return doubling / (1.0 + doubling), 1.0 / (1.0 + doubling)
-
-
-def _checked(ratio: float) -> float:
-    number = isinstance(ratio, int | float | np.number) and not isinstance(ratio, bool)
-    if not number or not 0.0 < ratio <= 1.0:
-        raise InputError([Violation("core_radius_ratio", ratio, "(0, 1], or None for the default")])
-    return float(ratio)
 
 
 GENERAL = Model(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
+from bondcell.errors import InputError, Violation
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,29 @@ class Springs:
         shape = cell.shape
         spread = {name: np.broadcast_to(part, shape) for name, part in parts.items()}
         return cls(np.broadcast_to(stiffness, shape), spread, relative_error)
+
+
+def radius_ratio(option: str, value: Any, otherwise: str = "") -> float:
+    """Check an option that is a radius over the smaller particle's, in (0, 1].
+
+    Parameters
+    ----------
+    option
+        Name of the option.
+    value
+        What was given.
+    otherwise
+        What else is accepted, for the message.
+
+    Raises
+    ------
+    InputError
+        The value is no number of that interval.
+    """
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    if not number or not 0.0 < value <= 1.0:
+        raise InputError([Violation(option, value, f"(0, 1]{otherwise}")])
+    return float(value)
 
 
 def in_series(*springs: FloatArray) -> FloatArray:

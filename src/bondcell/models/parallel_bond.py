@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell
-from bondcell.errors import InputError, Violation
-from bondcell.models.model import Model, Springs
+from bondcell.models.model import Model, Springs, radius_ratio
 
 RELATIVE_ERROR = 2e-15
 """Bound of the round-off of six operations."""
@@ -56,10 +55,8 @@ def normal(cell: Cell, bond_radius_ratio: float = 1.0) -> Springs:
     >>> float(normal(cell).stiffness.round(3))
     16493.361
     """
-    number = isinstance(bond_radius_ratio, int | float | np.number)
-    if not number or isinstance(bond_radius_ratio, bool) or not 0.0 < bond_radius_ratio <= 1.0:
-        raise InputError([Violation("bond_radius_ratio", bond_radius_ratio, "(0, 1]")])
-    bond_radius = bond_radius_ratio * np.minimum(cell.radius_i, cell.radius_j)
+    ratio = radius_ratio("bond_radius_ratio", bond_radius_ratio)
+    bond_radius = ratio * np.minimum(cell.radius_i, cell.radius_j)
     stiffness = np.pi * bond_radius**2 * cell.young_m / (cell.radius_i + cell.radius_j)
     return Springs.of_cell(cell, stiffness, RELATIVE_ERROR)
 
