@@ -12,7 +12,7 @@ from skfem import MeshQuad
 from bondcell.cell import FloatArray
 from bondcell.fem.breaks import graded_breaks
 from bondcell.fem.curved_mapping import CurvedMapping, lobatto_points
-from bondcell.fem.half_cell import FOOT_ANGLE, MIDDLE_ANGLE, NEAR_FIELD, HalfCell, Key
+from bondcell.fem.half_cell import FOOT_ANGLE, MATRIX, MIDDLE_ANGLE, NEAR_FIELD, HalfCell, Key
 from bondcell.fem.half_matrix import add_matrix
 from bondcell.fem.half_particle import add_particle
 from bondcell.fem.orientation import orient
@@ -78,6 +78,8 @@ class CellMesh:
         Axial coordinate of end plane j [m].
     region
         `half_cell.MATRIX`, `PARTICLE_I` or `PARTICLE_J` of each element.
+    carried
+        Particle j and the thin elements beside its foot, which hardly strain when j moves.
     labels
         Names of boundaries -> vertices on them: ``axis``, ``end_i``, ``end_j``, ``lateral``,
         ``middle`` (only where the mesh ends there).
@@ -89,6 +91,7 @@ class CellMesh:
     offset: float
     end_height: float
     region: NDArray[np.int8]
+    carried: NDArray[np.bool_]
     labels: dict[str, NDArray[np.int64]]
 
     def mapping(self, order: int) -> CurvedMapping:
@@ -203,9 +206,11 @@ def _columns(halves: list[HalfCell], needed: list[float]) -> list[float]:
 def _glue(halves: list[HalfCell], geometry: Geometry) -> CellMesh:
     offset = geometry.gap / 2
     number: dict[Key, int] = {}
-    quads, patches, flips, regions = [], [], [], []
+    quads, patches, flips, regions, carried = [], [], [], [], []
     for part in halves:
-        for keys, patch, region in part.elements:
+        for place, (keys, patch, region) in enumerate(part.elements):
+            beside = place in part.beside_foot
+            carried.append(part.side == "j" and (beside or region != MATRIX))
             quads.append([number.setdefault(key, len(number)) for key in keys])
             patches.append(patch)
             flips.append(-1.0 if part.side == "i" else 1.0)
@@ -233,6 +238,7 @@ def _glue(halves: list[HalfCell], geometry: Geometry) -> CellMesh:
         offset=offset,
         end_height=offset + geometry.radius_j,
         region=np.array(regions, dtype=np.int8),
+        carried=np.array(carried),
         labels={name: np.unique(vertices) for name, vertices in labels.items()},
     )
 

@@ -69,6 +69,7 @@ class HalfCell:
     cut: bool
     growth: float
     elements: list[tuple[tuple[Key, ...], Patch, int]] = field(default_factory=list)
+    beside_foot: set[int] = field(default_factory=set)
     labels: dict[Key, set[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:

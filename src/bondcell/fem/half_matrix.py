@@ -35,7 +35,10 @@ def _add_rows(half: HalfCell) -> list[float]:
     starts = half.row_starts
     angles = [np.pi / 2 - half.foot[k] * FOOT_ANGLE for k in starts]
     heights = [-half.radius, *(half.side_height(a) for a in angles[1:-1]), half.level]
+    first = len(half.elements)
     for row in range(1 if half.cut else 0, len(starts) - 1):
+        if row == len(starts) - 2:
+            half.beside_foot.update(range(first, len(half.elements)))
         top = ((half.side_radius, heights[row]), (half.side_radius, heights[row + 1]))
         if row == 0 and half.corner_breaks:
             _add_foot_rings(half, (angles[0], angles[1]), top)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import CellMesh
 from bondcell.fem.curved_mapping import lobatto_points
-from bondcell.fem.half_cell import PARTICLE_I, PARTICLE_J
+from bondcell.fem.half_cell import PARTICLE_I
 from bondcell.fem.numbering import Numbering
 from bondcell.fem.supports import Motion, Supports
 
@@ -31,14 +31,13 @@ def lifts(
 ) -> FloatArray:
     """Motions that the displacement starts from: the stiff lifts, then the soft ones.
 
-    Both follow the rigid motion on particle j and in the prescribed components of the moved
-    boundaries. The stiff lift vanishes elsewhere; the soft one goes on through the matrix up to
-    what is prescribed to be at rest.
+    Both follow the rigid motion on particle j, in the thin elements beside its foot, and in the
+    prescribed components of the moved boundaries. The stiff lift vanishes elsewhere; the soft one
+    goes on through the matrix up to what is prescribed to be at rest.
     """
     moved = {name: supports.held[name] for name in supports.moved if name in mesh.boundary}
     prescribed = numbering.marked(moved) & held
-
-    stiff = prescribed | numbering.on_elements(mesh.region == PARTICLE_J)
+    stiff = prescribed | (numbering.on_elements(mesh.carried) & ~(held & ~prescribed))
     soft = stiff | (numbering.on_elements(mesh.region != PARTICLE_I) & ~held)
     return np.concatenate([np.where(lift[:, None], rigid, 0.0) for lift in (stiff, soft)], axis=1)
 
