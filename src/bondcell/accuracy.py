@@ -14,7 +14,6 @@ from bondcell.result_view import (
     REFERENCE,
     analytic_names,
     axis_values,
-    model_names,
     reference_names,
     swept_axes,
 )
@@ -124,7 +123,7 @@ class _Points:
         stiffness = study["stiffness"].transpose("model", ...)
         self.template = stiffness.isel(model=0, drop=True)
         self.coords = {str(axis): axis_values(study, axis) for axis in self.template.dims}
-        self.position = {name: index for index, name in enumerate(model_names(study))}
+        self.position = {str(name): i for i, name in enumerate(study["model"].values)}
         self.value = np.asarray(stiffness.values, dtype=float)
         self.status = self._aligned(study, "status", Status.ok, Status.not_computed)
         self.estimate = self._aligned(study, "error_estimate", np.nan, np.nan)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from bondcell.batches import ANALYTIC, REFERENCE, Batch
 from bondcell.cell import GEOMETRY
+from bondcell.result_names import all_variants, models_with
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
@@ -44,13 +45,14 @@ def plan(scene: Scene) -> list[Batch]:
         is enough to do.
     """
     sizes = {name: len(values) for name, values in scene.axes.items()}
-    batches = analytic_batches(scene.points, len(scene.models))
-    if scene.reference is not None:
-        batches += reference_batches(sizes, scene.reference.bc)
-    return batches
+    batches = []
+    for load in scene.loads:
+        method = ANALYTIC if load == scene.load else f"{ANALYTIC}_{load}"
+        batches += analytic_batches(scene.points, len(models_with(scene, load)), method)
+    return batches + reference_batches(sizes, all_variants(scene))
 
 
-def analytic_batches(points: int, models: int) -> list[Batch]:
+def analytic_batches(points: int, models: int, method: str = ANALYTIC) -> list[Batch]:
     """Batches of the analytic models; none where they are quicker than a job starts.
 
     Examples
@@ -63,18 +65,18 @@ def analytic_batches(points: int, models: int) -> list[Batch]:
     seconds = points * models * SECONDS_PER_ANALYTIC_POINT
     if seconds < WORTH_A_JOB:
         return []
-    return _split(ANALYTIC, points, seconds, at_least=ceil(points / LARGEST_ANALYTIC_BATCH))
+    return _split(method, points, seconds, at_least=ceil(points / LARGEST_ANALYTIC_BATCH))
 
 
-def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> list[Batch]:
+def reference_batches(sizes: Mapping[str, int], variants: tuple[str, ...]) -> list[Batch]:
     """Batches of the finite element reference; a geometry is never split.
 
     Parameters
     ----------
     sizes
         Axis -> number of its values.
-    conditions
-        Boundary conditions, each solved for itself.
+    variants
+        Boundary conditions of the normal load and other loads, each solved for itself.
 
     Examples
     --------
@@ -87,8 +89,8 @@ def reference_batches(sizes: Mapping[str, int], conditions: tuple[str, ...]) -> 
     seconds = geometries * (SECONDS_PER_GEOMETRY + states * SECONDS_PER_STATE)
     return [
         batch
-        for condition in conditions
-        for batch in _split(f"{REFERENCE}_{condition}", geometries, seconds)
+        for variant in variants
+        for batch in _split(f"{REFERENCE}_{variant}", geometries, seconds)
     ]
 
 

@@ -41,4 +41,5 @@ def batch_dataset(
         {name: (("model", "point"), values, attributes[name]) for name, values in stacked.items()}
         | {"point_index": ("point", positions, index)},
         {"model": list(results)},
+        {"load": load},
     )

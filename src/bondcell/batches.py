@@ -14,10 +14,10 @@ from bondcell.cell import Cell, FloatArray
 from bondcell.errors import InputError, Violation
 
 ANALYTIC = "analytic"
-"""Method of a batch of analytic models."""
+"""Method of a batch of analytic models; one of another load than the first ends in its name."""
 
 REFERENCE = "fe"
-"""Method of a batch of the finite element reference, followed by the boundary condition."""
+"""Method of a batch of the reference, followed by boundary condition or load."""
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ class Batch:
 
     def points(self, cell: Cell) -> NDArray[np.int64]:
         """Positions of the batch's points in the raveled cell, ascending."""
-        if self.method == ANALYTIC:
+        if self.method.split("_")[0] == ANALYTIC:
             return np.arange(self.part - 1, math.prod(cell.shape), self.parts)
         groups = list(geometry_groups(cell.ravel()))[self.part - 1 :: self.parts]
         return np.sort(np.concatenate([*groups, np.empty(0, dtype=np.int64)]))

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray as xr
 
 from bondcell import provenance
@@ -13,15 +14,22 @@ from bondcell.analytic_batch import compute_analytic
 from bondcell.batch_files import read_batch
 from bondcell.batches import ANALYTIC, REFERENCE, Batch
 from bondcell.merge import merge
+from bondcell.outputs import DETAILS
+from bondcell.result_names import models_with, reference_variants, result_names
+from bondcell.status import Status
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
 
 
 def collect(
-    scene: Scene, study: xr.Dataset | None, analytic: Sequence[Path], reference: Sequence[Path]
+    scene: Scene,
+    study: xr.Dataset | None,
+    analytic: Sequence[Path],
+    reference: Sequence[Path],
+    load: str | None = None,
 ) -> xr.Dataset:
-    """Results at the points of a scene with their provenance.
+    """Results at the points of a scene under one load with their provenance.
 
     Parameters
     ----------
@@ -33,6 +41,9 @@ def collect(
         Files of its analytic batches; without any the scene's models are evaluated here.
     reference
         Files of its finite element batches.
+    load
+        One of its loads, the first by default. Every load has the same models: one that does not
+        cover the load is NaN, flagged ``not_computed``.
 
     Raises
     ------
@@ -42,14 +53,35 @@ def collect(
     attributes = provenance.collect(scene)
     if study is None:
         return xr.Dataset(attrs=attributes)
-    batches = [read_batch(path, scene.models_digest) for path in analytic]
-    batches += [read_batch(path, scene.reference_digest) for path in reference]
-    attributes |= machines(batches)
-    if scene.models and not analytic:
-        batches.append(
-            compute_analytic(study, Batch(ANALYTIC), scene.models, scene.load, scene.contributions)
-        )
-    return merge(study, batches, labels(scene)).assign_attrs(attributes)
+    load = load or scene.load
+    found = [read_batch(path, scene.models_digest) for path in analytic]
+    found += [read_batch(path, scene.reference_digest) for path in reference]
+    attributes |= machines(found)
+    batches = [batch for batch in found if batch.attrs["load"] == load]
+    models = models_with(scene, load)
+    if models and not any(set(models) & set(batch["model"].values) for batch in batches):
+        batches.append(compute_analytic(study, Batch(ANALYTIC), models, load, scene.contributions))
+    merged = merge(study, batches, labels(scene, load))
+    return _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
+
+
+def collect_other_loads(
+    scene: Scene, study: xr.Dataset | None, analytic: Sequence[Path], reference: Sequence[Path]
+) -> dict[str, xr.Dataset]:
+    """Results under every load but the first, as groups of the scene's file: axes and outputs.
+
+    Parameters
+    ----------
+    scene, study, analytic, reference
+        As in `collect`.
+    """
+    if study is None:
+        return {}
+    inputs = list(study.data_vars)
+    return {
+        load: collect(scene, study, analytic, reference, load).drop_vars(inputs)
+        for load in scene.loads[1:]
+    }
 
 
 def collect_convergence(scene: Scene, files: Iterable[Path]) -> dict[str, xr.Dataset]:
@@ -68,10 +100,25 @@ def collect_convergence(scene: Scene, files: Iterable[Path]) -> dict[str, xr.Dat
     return groups
 
 
-def labels(scene: Scene) -> dict[str, str]:
+def labels(scene: Scene, load: str | None = None) -> dict[str, str]:
     """Name in the batch files -> name in the dimension ``model``, in the scene's order."""
-    models = {name: name for name in scene.models}
-    return models | {f"{REFERENCE}_{bc}": name for name, bc in scene.fe_names.items()}
+    load = load or scene.load
+    models = {name: name for name in models_with(scene, load)}
+    references = reference_variants(scene, load)
+    return models | {f"{REFERENCE}_{variant}": name for name, variant in references.items()}
+
+
+def _with_models(merged: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """Rows for models without the load as well, so that all loads share one dimension."""
+    if merged["model"].values.tolist() == names:
+        return merged
+    blank: dict[Any, Any] = {"status": Status.not_computed, "dof": 0, **DETAILS}
+    present = {name: value for name, value in blank.items() if name in merged}
+    full = merged.reindex(model=names, fill_value={**present, "stiffness": np.nan})
+    for name in present:
+        full[name] = full[name].astype(merged[name].dtype)
+    full["model"].attrs = merged["model"].attrs
+    return full
 
 
 def machines(datasets: Iterable[xr.Dataset]) -> dict[str, str]:

@@ -1,7 +1,8 @@
 """What a convergence study says: error against the finest level, observed order, a tidy table.
 
 A study has the dimensions ``(case, method, level)``: its methods are the discretisations, its
-levels their ladders from coarse to fine. Analytic models stand beside them on ``(case, model)``.
+levels their ladders from coarse to fine. Analytic models stand beside them on
+``(case, analytic_model)``.
 """
 
 from __future__ import annotations
@@ -16,8 +17,17 @@ import xarray as xr
 from bondcell.cell import FloatArray
 from bondcell.status import Status
 
-STRUCTURED, TRIANGLES = "structured", "triangles"
-"""The discretisations: the p-ladder and the h-ladder."""
+STRUCTURED, GRADED, TRIANGLES = "structured", "structured_h", "triangles"
+"""The discretisations: the p-ladder, the h-ladder of the same elements, that of the triangles."""
+
+BASIS = "reduced_basis"
+"""The ladder of a growing reduced basis."""
+
+MODEL = "analytic_model"
+"""Dimension of the analytic models; not ``model``, whose entries are those of the sweep."""
+
+ROTATIONAL = "rotational_stiffness"
+"""Where the stiffness under torsion and bending stands, for it has another unit."""
 
 ROUND_OFF = 1e-13
 """Errors below it are round-off: no order is observed there."""
@@ -27,6 +37,7 @@ STAGES = ("seconds_mesh", "seconds_assembly", "seconds_solve")
 
 COLUMNS = (
     "case",
+    "load",
     "bc",
     "method",
     "level",
@@ -34,11 +45,14 @@ COLUMNS = (
     "dof",
     "elements",
     "stiffness",
+    "unit",
     "error",
     "order",
     *STAGES,
     "seconds",
     "status",
+    "bound",
+    "sample_error",
 )
 """Columns of `convergence_table`."""
 
@@ -103,15 +117,18 @@ def convergence_table(study: xr.Dataset) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        The `COLUMNS`. ``refinement`` is the polynomial order of ``structured`` and the element size
-        of ``triangles``; ``error`` is relative to the finest structured level, which has none
-        itself; ``order`` as in `observed_order`; times [s] are medians of repeats, those of an
-        analytic model per point. An analytic model has neither level nor unknowns.
+        The `COLUMNS`. ``refinement`` is the polynomial order of ``structured``, the ratio of
+        neighbouring elements of ``structured_h``, the element size of ``triangles``, the number of
+        vectors of ``reduced_basis``; ``error`` is relative to the finest structured level, which
+        has none itself; ``order`` as in `observed_order`; times [s] are medians of repeats, those
+        of a reduced basis and of an analytic model per point. An analytic model has neither level
+        nor unknowns. ``bound`` and ``sample_error`` of a reduced basis are its largest bound over
+        random materials and its largest true error over a sample of them.
     """
     rows = []
     for case in study["case"].values:
         of_case = study.sel(case=case)
-        head = {"case": str(case), "bc": str(of_case["bc"].values)}
+        head = {name: str(of_case[name].values) for name in ("case", "load", "bc", "unit")}
         rows += [head | row for row in _ladder_rows(of_case)]
         rows += [head | row for row in _model_rows(of_case)]
     table = pd.DataFrame(rows, columns=list(COLUMNS))
@@ -125,19 +142,30 @@ def _ladder_rows(of_case: xr.Dataset) -> list[dict[str, Any]]:
         ladder = of_case.sel({"method": method})  # as a keyword it is an option of sel
         for level in ladder["level"].values[np.isfinite(ladder["refinement"].values)]:
             at = ladder.sel(level=level)
-            row = {name: at[name].item() for name in COLUMNS if name in at.data_vars}
+            known = [name for name in COLUMNS if name in at.data_vars and not at[name].isnull()]
+            row = {name: at[name].item() for name in known if at[name].dtype.kind in "iuf"}
+            row |= _stiffness(at, "")
             rows.append(row | {"method": str(method), "level": int(level)} | _status(row["status"]))
     return rows
 
 
 def _model_rows(of_case: xr.Dataset) -> list[dict[str, Any]]:
     rows = []
-    for model in of_case["model"].values if "model" in of_case.dims else ():
-        at = of_case.sel(model=model)
-        names = ("stiffness", "error", "seconds", "status")
-        row = {name: at[f"model_{name}"].item() for name in names}
+    for model in of_case[MODEL].values if MODEL in of_case.dims else ():
+        at = of_case.sel({MODEL: model})
+        if at["model_status"] == Status.not_computed:
+            continue
+        row = {name: at[f"model_{name}"].item() for name in ("error", "seconds", "status")}
+        row |= _stiffness(at, "model_")
         rows.append(row | {"method": str(model)} | _status(row["status"]))
     return rows
+
+
+def _stiffness(at: xr.Dataset, prefix: str) -> dict[str, float]:
+    """The stiffness, from whichever variable the load's unit put it in."""
+    values = [at[prefix + name].item() for name in ("stiffness", ROTATIONAL) if prefix + name in at]
+    known = [value for value in values if np.isfinite(value)]
+    return {"stiffness": known[0] if known else np.nan}
 
 
 def _status(code: float) -> dict[str, str]:

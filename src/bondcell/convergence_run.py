@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from statistics import median
 from typing import TYPE_CHECKING, Any
@@ -12,8 +12,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from bondcell.cell import LONG_NAMES, UNITS, Cell, FloatArray
+from bondcell.basis_ladder import climb_basis
+from bondcell.cell import LONG_NAMES, UNITS, FloatArray
 from bondcell.convergence import (
+    BASIS,
+    GRADED,
+    MODEL,
+    ROTATIONAL,
     STAGES,
     STRUCTURED,
     TRIANGLES,
@@ -26,10 +31,17 @@ from bondcell.evaluate import evaluate
 from bondcell.fem import structured, triangles
 from bondcell.fem.level import Level
 from bondcell.outputs import STIFFNESS_UNITS
+from bondcell.scene_names import covering
 from bondcell.status import Status, cf_flag_attributes
 
 if TYPE_CHECKING:
-    from bondcell.scene import Scene
+    from bondcell.scene import ConvergenceCase, Scene
+    from bondcell.scene_blocks import Convergence
+
+GRADED_ORDER = 4
+"""Polynomial order of the structured h-ladder."""
+
+_OF_BASIS = ("bound", "sample_error")
 
 MODEL_POINTS = (100, 10_000)
 """Fewest and most points on which an analytic model is timed: cells of slightly different gaps."""
@@ -50,6 +62,8 @@ class _Rung:
     refinement: float
     status: Status
     level: Level
+    bound: float = np.nan
+    sample_error: float = np.nan
 
 
 def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
@@ -65,11 +79,13 @@ def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Datase
     Returns
     -------
     xarray.Dataset
-        On ``(case, method, level)``: ``refinement`` (order p or element size), ``stiffness``
-        [N m-1], ``dof``, ``elements``, ``seconds_mesh``, ``seconds_assembly``, ``seconds_solve``,
-        ``seconds``, ``error``, ``order``, ``status``. On ``(case, model)``: ``model_stiffness``,
-        ``model_error``, ``model_seconds``, ``model_status``. On ``case``: ``reference``,
-        ``reference_error``, ``bc`` and the inputs.
+        On ``(case, method, level)``: ``refinement`` (order p, ratio of neighbouring elements,
+        element size or vectors of a basis), ``stiffness`` [N m-1] or ``rotational_stiffness``
+        [N m rad-1], ``dof``, ``elements``, ``seconds_mesh``, ``seconds_assembly``,
+        ``seconds_solve``, ``seconds``, ``error``, ``order``, ``status``, and of the reduced basis
+        ``bound`` and ``sample_error``. On ``(case, analytic_model)``: ``model_stiffness`` (or
+        ``model_rotational_stiffness``), ``model_error``, ``model_seconds``, ``model_status``. On
+        ``case``: ``reference_error``, ``load``, ``unit``, ``bc`` and the inputs.
     """
     cases = {}
     for number, name in enumerate(scene.cases(), start=1):
@@ -80,7 +96,7 @@ def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Datase
 
 
 def run_case(scene: Scene, name: str) -> xr.Dataset:
-    """Run one case; dimensions ``(method, level)`` and ``(model,)``, else as `run_convergence`.
+    """Run one case; dimensions ``(method, level)`` and models, else as `run_convergence`.
 
     A level that fails is NaN, ``status`` and a warning say why. Errors are relative to the finest
     level of the first ladder, the structured one; ``reference_error`` is the difference of its two
@@ -89,23 +105,58 @@ def run_case(scene: Scene, name: str) -> xr.Dataset:
     block = scene.convergence
     if block is None or name not in scene.cases():
         raise KeyError(f"no convergence case {name!r} in the scene {scene.name!r}")
-    cell, bc = scene.cases()[name]
-    ladders: dict[str, list[_Rung]] = {}
-    if block.orders:
-        solve = partial(structured.solve_level, cell, bc=bc)
-        ladders[STRUCTURED] = _climb(name, solve, "order", block.orders, block.repeats)
-    if block.sizes:
-        solve = partial(triangles.solve_level, cell, bc=bc)
-        ladders[TRIANGLES] = _climb(name, solve, "size", block.sizes, block.repeats)
+    case = scene.cases()[name]
+    ladders = _ladders(name, case, block)
     reference, doubt = _reference(ladders)
     result = xr.merge(
         [
             _ladder_dataset(ladders, reference),
-            _model_dataset(cell, scene.models, scene.load, block.repeats, reference),
-            _case_dataset(cell, bc, reference, doubt),
+            _model_dataset(case, scene.models, block.repeats, reference),
+            _case_dataset(case, doubt),
         ]
     )
+    if case.load in ("torsion", "bending"):
+        names = {"stiffness": ROTATIONAL, "model_stiffness": f"model_{ROTATIONAL}"}
+        result = result.rename(names)
+        for renamed in names.values():
+            result[renamed].attrs["units"] = STIFFNESS_UNITS[case.load]
     return result.assign_attrs(title=f"Convergence study of {scene.name}", repeats=block.repeats)
+
+
+def _ladders(name: str, case: ConvergenceCase, block: Convergence) -> dict[str, list[_Rung]]:
+    """Climb what the scene asks for; only the normal load has triangles."""
+    ladders: dict[str, list[_Rung]] = {}
+    options: dict[str, Any] = {"bc": case.bc} if case.load == "normal" else {"load": case.load}
+    if block.orders:
+        solve = partial(structured.solve_level, case.cell, **options)
+        ladders[STRUCTURED] = _climb(name, solve, "order", block.orders, block.repeats)
+    if block.gradings:
+        solve = partial(_solve_graded, case)
+        ladders[GRADED] = _climb(name, solve, "growth", block.gradings, block.repeats)
+    if block.sizes and case.load == "normal":
+        solve = partial(triangles.solve_level, case.cell, bc=case.bc)
+        ladders[TRIANGLES] = _climb(name, solve, "size", block.sizes, block.repeats)
+    if block.basis_order:
+        ladders[BASIS] = _grow(name, case, block.basis_order, block.repeats)
+    return ladders
+
+
+def _solve_graded(case: ConvergenceCase, growth: float) -> Level:
+    """The structured mesh with neighbouring elements of that ratio, order `GRADED_ORDER`."""
+    usual = structured.find_load(case.load, case.bc).grading
+    grading = replace(usual, growth=growth, foot_growth=growth, corner_growth=2 * growth)
+    return structured.solve_level(
+        case.cell, GRADED_ORDER, bc=case.bc, load=case.load, grading=grading
+    )
+
+
+def _grow(name: str, case: ConvergenceCase, order: int, repeats: int) -> list[_Rung]:
+    try:
+        rungs = list(climb_basis(case.cell, order, case.bc, case.load, repeats))
+    except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError) as error:
+        warnings.warn(f"case {name}, reduced basis of order {order}: {error}", stacklevel=2)
+        return [_Rung(0, _failure(error), _FAILED)]
+    return [_Rung(r.size, Status.ok, r.level, r.bound, r.error) for r in rungs]
 
 
 def _climb(
@@ -154,7 +205,7 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
     methods = list(ladders)
     levels = max((len(rungs) for rungs in ladders.values()), default=0)
     shape = (len(methods), levels)
-    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds")
+    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds", *_OF_BASIS)
     real = {name: np.full(shape, np.nan) for name in names}
     count = {name: np.zeros(shape, dtype=np.int64) for name in ("dof", "elements")}
     status = np.full(shape, Status.not_computed, dtype=np.int8)
@@ -164,7 +215,8 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
             name: np.array([getattr(rung.level, name) for rung in rungs])
             for name in ("stiffness", "dof", "elements", *STAGES, "seconds")
         }
-        values["refinement"] = np.array([rung.refinement for rung in rungs])
+        for name in ("refinement", *_OF_BASIS):
+            values[name] = np.array([getattr(rung, name) for rung in rungs])
         values["error"] = relative_error(values["stiffness"], reference)
         values["order"] = observed_order(values["error"], _work(method, values))
         status[here] = [rung.status for rung in rungs]
@@ -183,22 +235,25 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
 
 def _work(method: str, values: Mapping[str, FloatArray]) -> FloatArray:
     """Logarithm of what grows with refinement, see `observed_order`."""
-    if method == STRUCTURED:
+    if method in (STRUCTURED, BASIS):
         return values["refinement"]
     return np.log(np.maximum(values["dof"], 1)) / 2
 
 
 def _model_dataset(
-    cell: Cell, models: Sequence[str], load: str, repeats: int, reference: float
+    case: ConvergenceCase, models: Sequence[str], repeats: int, reference: float
 ) -> xr.Dataset:
     """Stiffness of each analytic model at the cell, and its time per point on many such cells."""
-    inputs = {name: float(value.ravel()[0]) for name, value in cell.as_dict().items()}
+    able, load = covering([case.load]), case.load
+    inputs = {name: float(value.ravel()[0]) for name, value in case.cell.as_dict().items()}
     fewest, most = MODEL_POINTS
     spread = inputs.pop("gap") * (1 + 1e-3 * np.linspace(0, 1, most))
     cells = xr.Dataset(inputs).assign(gap=("point", spread))
     stiffness, seconds = np.full(len(models), np.nan), np.full(len(models), np.nan)
     status = np.full(len(models), Status.not_computed, dtype=np.int8)
     for row, model in enumerate(models):
+        if model not in able:
+            continue
         first = evaluate(cells.isel(point=slice(fewest)), model, load).isel(point=0)
         stiffness[row], status[row] = first["stiffness"], first["status"]
         count = int(np.clip(MODEL_SECONDS / float(first["seconds"]), fewest, most))
@@ -212,20 +267,22 @@ def _model_dataset(
         "model_status": status,
     }
     return xr.Dataset(
-        {name: ("model", data, _MODEL_ATTRIBUTES[name]) for name, data in values.items()},
-        {"model": ("model", list(models), {"long_name": "model"})},
+        {name: (MODEL, data, _MODEL_ATTRIBUTES[name]) for name, data in values.items()},
+        {MODEL: (MODEL, list(models), {"long_name": "analytic model"})},
     )
 
 
-def _case_dataset(cell: Cell, bc: str, reference: float, doubt: float) -> xr.Dataset:
+def _case_dataset(case: ConvergenceCase, doubt: float) -> xr.Dataset:
     inputs = {
         name: ((), float(value.ravel()[0]), {"units": UNITS[name], "long_name": LONG_NAMES[name]})
-        for name, value in cell.as_dict().items()
+        for name, value in case.cell.as_dict().items()
     }
+    condition = case.bc if case.load == "normal" else "none"
     about = {
-        "reference": ((), reference, _stiffness("finest level of the structured discretisation")),
         "reference_error": ((), doubt, _number("relative difference of the two finest levels")),
-        "bc": ((), bc, {"long_name": "boundary condition"}),
+        "load": ((), case.load, {"long_name": "load"}),
+        "unit": ((), STIFFNESS_UNITS[case.load], {"long_name": "unit of the stiffness"}),
+        "bc": ((), condition, {"long_name": "boundary condition"}),
     }
     return xr.Dataset(about | inputs)
 
@@ -243,8 +300,8 @@ def _time(long_name: str) -> dict[str, Any]:
 
 
 _LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
-    "refinement": _number("polynomial order, or element size relative to the local scale"),
-    "stiffness": _stiffness("normal stiffness of the bond"),
+    "refinement": _number("order, ratio of neighbours, relative element size or basis vectors"),
+    "stiffness": _stiffness("stiffness of the bond"),
     "error": _number("error relative to the finest structured level"),
     "order": _number("observed order in dof^(-1/2) of triangles, exponential rate in p else"),
     "seconds_mesh": _time("wall time of meshing, median of repeats"),
@@ -254,10 +311,12 @@ _LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
     "dof": _number("degrees of freedom"),
     "elements": _number("elements of the mesh"),
     "status": cf_flag_attributes(),
+    "bound": _number("largest bound of the reduced basis over random materials"),
+    "sample_error": _number("largest true error of the reduced basis over a sample of them"),
 }
 
 _MODEL_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
-    "model_stiffness": _stiffness("normal stiffness by an analytic model"),
+    "model_stiffness": _stiffness("stiffness by an analytic model"),
     "model_error": _number("error of an analytic model relative to the finest structured level"),
     "model_seconds": _time("wall time per point among many, median of repeats"),
     "model_status": cf_flag_attributes(),

@@ -11,12 +11,14 @@ from bondcell.errors import InputError, Violation
 from bondcell.fem.reference import solve
 from bondcell.inputs import cell_from_study
 
+OTHER_LOADS = ("shear", "torsion", "bending")
+"""Loads without boundary conditions to choose from."""
+
 
 def compute_reference(
     study: xr.Dataset,
     batch: Batch,
     tolerance: float,
-    load: str = "normal",
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Finite element stiffness at the batch's points, geometry by geometry.
@@ -26,21 +28,22 @@ def compute_reference(
     study
         Inputs of the whole scene.
     batch
-        Which of its geometries; its method ends in the boundary condition.
+        Which of its geometries; its method ends in a boundary condition of the normal load, or in
+        another load.
     tolerance
         Relative error at which refinement stops.
-    load
-        Load name.
     progress
         Called as ``progress(points_done, points)`` after each geometry.
     """
-    method, _, condition = batch.method.partition("_")
-    if method != REFERENCE or not condition:
-        allowed = f"{REFERENCE}_<boundary condition>_<part>of<parts>"
+    method, _, variant = batch.method.partition("_")
+    if method != REFERENCE or not variant:
+        allowed = f"{REFERENCE}_<boundary condition or load>_<part>of<parts>"
         raise InputError([Violation("batch", batch.name, allowed)])
+    load = variant if variant in OTHER_LOADS else "normal"
+    options = {"bc": variant} if load == "normal" else {}
     cell, _ = cell_from_study(study)
     positions = batch.points(cell)
     results = solve_points(
-        cell_at(cell, positions), solve, load, progress, bc=condition, tolerance=tolerance
+        cell_at(cell, positions), solve, load, progress, tolerance=tolerance, **options
     )
     return batch_dataset(positions, {batch.method: results}, load)

@@ -10,6 +10,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bondcell.cell import UNITS
+from bondcell.models import MODELS
 
 REFERENCE = "fe"
 """Name of the reference in the dimension ``model``; others of its kind are called ``fe_<bc>``."""
@@ -27,10 +28,18 @@ def is_reference(name: str) -> bool:
 
 
 def model_names(study: xr.Dataset) -> list[str]:
-    """Entries of the dimension ``model``, in the order of the file."""
+    """Entries of the dimension ``model`` that cover the load, in the order of the file."""
     if "stiffness" not in study or "model" not in study["stiffness"].dims:
         return []
-    return [str(name) for name in study["model"].values]
+    load = load_name(study)
+    return [str(name) for name in study["model"].values if _covers(str(name), load)]
+
+
+def _covers(name: str, load: str) -> bool:
+    """Whether a row of a result can hold values: a file has the same rows under every load."""
+    if is_reference(name):  # only the normal load has several boundary conditions
+        return load == "normal" or name == REFERENCE
+    return name not in MODELS or load in MODELS[name].loads
 
 
 def reference_names(study: xr.Dataset) -> list[str]:

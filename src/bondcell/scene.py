@@ -24,7 +24,7 @@ from bondcell.scene_fields import (
     distinct,
     text_up_to,
 )
-from bondcell.scene_names import LoadName, ModelName
+from bondcell.scene_names import LoadNames, ModelName
 from bondcell.scene_sweep import Range, Sweep
 from bondcell.scene_violations import KeyPath, as_given, found_violations, null_violations, without
 from bondcell.yaml_loading import load_mapping
@@ -34,10 +34,11 @@ RESERVED = ("study",)
 
 
 class ConvergenceCase(NamedTuple):
-    """A complete cell of the convergence study and its boundary condition."""
+    """A complete cell of the convergence study, its load and (of the normal one) its condition."""
 
     cell: Cell
     bc: str
+    load: str = "normal"
 
 
 class Scene(Block):
@@ -65,9 +66,20 @@ class Scene(Block):
     reference: Reference | None = Field(
         None, description="Finite element reference; left out: nothing is meshed."
     )
-    load: LoadName = Field("normal", description="Load on the cell.")
+    loads: LoadNames = Field(
+        ("normal",),
+        alias="load",
+        description="Load on the cell, one or a list; a model is evaluated for those it covers. "
+        "The results of the first are in the root group of study.nc, those of each other one in "
+        "a group of its name.",
+    )
     contributions: Flag = Field(
         False, description="Whether to store the springs k_i, k_int, k_j of the model fsi."
+    )
+    stability: Flag = Field(
+        False,
+        description="Whether to write stability.csv: every point of the reference with its error "
+        "estimate, flag, cost and condition, worst first.",
     )
     convergence: Convergence | None = Field(None, description="Convergence study; left out: none.")
 
@@ -78,6 +90,11 @@ class Scene(Block):
     def name(self) -> str:
         """Name of the scene: the file's name without folder and ending."""
         return self._name
+
+    @property
+    def load(self) -> str:
+        """The first load, whose results are in the root group of the scene's file."""
+        return self.loads[0]
 
     @property
     def given_json(self) -> str:
@@ -127,11 +144,14 @@ class Scene(Block):
         if self.convergence is None:
             return {}
         given = self.cell.given()
+        block = self.convergence
         return {
             name: ConvergenceCase(
-                Cell.from_values(**{**given, **case.given()}), case.bc or self.convergence.bc
+                cell=Cell.from_values(**{**given, **case.given()}),
+                bc=case.bc or block.bc,
+                load=case.load or self.load,
             )
-            for name, case in self.convergence.cases.items()
+            for name, case in block.cases.items()
         }
 
     @property
@@ -271,7 +291,7 @@ def known_keys(path: KeyPath) -> tuple[str, ...]:
         block = blocks[str(path[0])]
     if len(path) > 1:
         block = Range if path[0] == "sweep" else Case
-    return tuple(block.model_fields)
+    return tuple(field.alias or name for name, field in block.model_fields.items())
 
 
 def scene_json_schema() -> dict[str, Any]:

@@ -24,9 +24,13 @@ from bondcell.scene_fields import (
     one_of,
     whole_number_between,
 )
+from bondcell.scene_names import LoadName
 
 ORDERS = (1, 20)
 """Polynomial orders that may be asked of the structured discretisation."""
+
+GRADINGS = (1.2, 20.0)
+"""Ratios of neighbouring element sizes of the structured discretisation."""
 
 SIZES = (0.02, 4.0)
 """Element sizes of the triangles, relative to the local scale."""
@@ -73,7 +77,12 @@ class Case(CellInputs):
     """A cell of the convergence study: what differs from the scene's `cell`."""
 
     bc: BoundaryCondition | None = Field(
-        None, description="Boundary condition of this case; left out: that of the block."
+        None,
+        description="Boundary condition of this case, of the normal load; left out: that of the "
+        "block.",
+    )
+    load: LoadName | None = Field(
+        None, description="Load of this case; left out: the scene's first."
     )
 
 
@@ -92,8 +101,8 @@ class Reference(Block):
         ),
     ] = Field(
         ("roller",),
-        description="Boundary conditions, one or a list: roller, clamped, confined. The first is "
-        "the one that the models are compared with.",
+        description="Boundary conditions of the normal load, one or a list: roller, clamped, "
+        "confined. The first is the one that the models are compared with.",
     )
     tolerance: Annotated[float, number_between(*TOLERANCES)] = Field(
         1e-6,
@@ -122,12 +131,12 @@ def _increasing(orders: tuple[int, ...]) -> tuple[int, ...]:
 
 def _decreasing(sizes: tuple[float, ...]) -> tuple[float, ...]:
     if any(later >= earlier for earlier, later in pairwise(sizes)):
-        raise NotAllowed("decreasing sizes, each once")
+        raise NotAllowed("decreasing values, each once")
     return sizes
 
 
 class Convergence(Block):
-    """Ladders of refinement: error against work for both discretisations."""
+    """Ladders of refinement: error against work of each discretisation."""
 
     cases: Annotated[
         dict[Annotated[str, BeforeValidator(_case_name)], Case], AfterValidator(_some_case)
@@ -153,7 +162,21 @@ class Convergence(Block):
         description=f"Element sizes of the triangles relative to the local scale, {list(SIZES)}, "
         "decreasing; none: they are not meshed.",
     )
-    bc: BoundaryCondition = Field("roller", description="Boundary condition of the cases.")
+    gradings: Annotated[
+        tuple[Annotated[float, number_between(*GRADINGS)], ...], AfterValidator(_decreasing)
+    ] = Field(
+        (),
+        description="Ratios of neighbouring element sizes of the structured discretisation at the "
+        f"fixed order 4, {list(GRADINGS)}, decreasing: an h-ladder; none: it is not run.",
+    )
+    basis_order: Annotated[int, whole_number_between(2, ORDERS[1])] | None = Field(
+        None,
+        description="Order of the discretisation on which a reduced basis is grown, vector by "
+        "vector; left out: none is.",
+    )
+    bc: BoundaryCondition = Field(
+        "roller", description="Boundary condition of the cases under the normal load."
+    )
     repeats: Annotated[int, whole_number_between(*REPEATS)] = Field(
         3,
         description="Timed runs of each level; the median is reported.",

@@ -10,11 +10,14 @@ import numpy as np
 from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell, FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.likely_units import unlikely
+from bondcell.result_names import models_with
+from bondcell.scene_names import covering
 from bondcell.scene_sweep import DERIVED, MOST_POINTS, resolve_inputs
 from bondcell.scene_violations import KeyPath
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
+    from bondcell.scene_blocks import Case
 
 _NEUTRAL = {name: 0.0 if UNITS[name] == "1" else 1.0 for name in UNITS}
 """Stands in for what is missing or wrong, so that the rest can be checked."""
@@ -47,6 +50,7 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
         for name in REQUIRED:
             if name not in supplied:
                 yield _required(f"cell.{name}", name, "or swept")
+    yield from _rigid_violations(scene, given, wrong, incomplete)
     if scene.points > MOST_POINTS:
         yield Violation("sweep", f"{scene.points} points", f"at most {MOST_POINTS} points")
     else:
@@ -66,8 +70,6 @@ def unit_warnings(scene: Scene) -> list[str]:
 
 
 def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
-    from bondcell.models import MODELS
-
     something = {("models",), ("reference",)} & set(bad)
     if scene.sweep and not (scene.has_points or something):
         yield Violation("models", None, "at least one model, or a reference, for the sweep")
@@ -75,17 +77,41 @@ def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Viol
         yield Violation("models", None, "something to compute: models, reference or convergence")
     if scene.contributions and "fsi" not in scene.models and ("models",) not in bad:
         yield Violation("contributions", True, "true only with fsi among the models")
-    ladder = scene.convergence and (scene.convergence.orders or scene.convergence.sizes)
+    block = scene.convergence
+    ladder = block and (block.orders or block.gradings or block.sizes)
     if scene.convergence and not (ladder or any(path[0] == "convergence" for path in bad)):
-        yield Violation("convergence", None, "with orders or sizes or both: a ladder to climb")
+        yield Violation(
+            "convergence", None, "with orders or sizes (or gradings): a ladder to climb"
+        )
+    if scene.stability and scene.reference is None and ("reference",) not in bad:
+        yield Violation("stability", True, "true only with a reference")
+    yield from _load_violations(scene)
+
+
+def _load_violations(scene: Scene) -> Iterator[Violation]:
+    """A model needs one of the loads, a load one that covers it, a condition the normal load."""
+    loads = {*scene.loads, *(case.load for case in _cases(scene).values() if case.load)}
     for i, name in enumerate(scene.models):
-        if scene.load not in MODELS[name].loads:
-            able = [other for other in MODELS if scene.load in MODELS[other].loads]
-            allowed = f"a model that covers the load {scene.load}: {', '.join(able)}"
-            yield Violation(f"models.{i}", name, allowed)
-    if scene.uses_finite_elements and scene.load not in MODELS["fe"].loads:
-        allowed = f"a load of the reference: {', '.join(MODELS['fe'].loads)}"
-        yield Violation("load", scene.load, allowed)
+        able = covering(loads)
+        if name not in able:
+            words = f"the load {' or '.join(scene.loads)}"
+            known = ", ".join(other for other in able if other != "fe") or "none; leave it out"
+            yield Violation(f"models.{i}", name, f"a model that covers {words}: {known}")
+    for load in scene.loads if scene.has_points else ():
+        if scene.reference is None and not models_with(scene, load):
+            allowed = f"a load that one of the models covers; of {load} they know nothing"
+            yield Violation("load", load, allowed)
+    condition = "left out: only the load normal has boundary conditions"
+    reference = scene.reference
+    if reference and "normal" not in scene.loads and "bc" in reference.model_fields_set:
+        yield Violation("reference.bc", ", ".join(reference.bc), condition)
+    for name, case in _cases(scene).items():
+        if case.bc and (case.load or scene.load) != "normal":
+            yield Violation(f"convergence.cases.{name}.bc", case.bc, condition)
+
+
+def _cases(scene: Scene) -> Mapping[str, Case]:
+    return scene.convergence.cases if scene.convergence else {}
 
 
 def _contradictory_axes(scene: Scene) -> Iterator[Violation]:
@@ -94,6 +120,21 @@ def _contradictory_axes(scene: Scene) -> Iterator[Violation]:
         if ratio in axes and name in axes:
             allowed = f"one of the axes {name} and {ratio}, not both: both set {name}"
             yield Violation(f"sweep.{ratio}", f"beside sweep.{name}", allowed)
+
+
+def _rigid_violations(
+    scene: Scene, given: Mapping[str, float], wrong: Collection[str], incomplete: bool
+) -> Iterator[Violation]:
+    """Rigid particles need a matrix of their own, and no other axis that sets their modulus."""
+    ratios = scene.axes.get("modulus_ratio")
+    if ratios is None or not np.isinf(ratios).any():
+        return
+    if not ("young_m" in given or "young_m" in wrong or incomplete):
+        yield _required("cell.young_m", "young_m", "beside the modulus ratio rigid")
+    for name in ("young_i", "young_j"):
+        if name in scene.axis_names:
+            allowed = f"finite ratios beside the axis {name}, which can say rigid itself"
+            yield Violation("sweep.modulus_ratio", "rigid", allowed)
 
 
 def _required(field: str, name: str, where: str) -> Violation:

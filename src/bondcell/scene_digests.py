@@ -44,14 +44,14 @@ def models(scene: Scene) -> str:
     """Digest of what the analytic results depend on."""
     if not scene.models:
         return _digest(None)
-    return _digest([points(scene), scene.load, scene.models, scene.contributions])
+    return _digest([points(scene), scene.loads, scene.models, scene.contributions])
 
 
 def reference(scene: Scene) -> str:
     """Digest of what the reference's results depend on."""
     if scene.reference is None:
         return _digest(None)
-    return _digest([points(scene), scene.load, scene.reference.model_dump()])
+    return _digest([points(scene), scene.loads, scene.reference.model_dump()])
 
 
 def sweep(scene: Scene) -> str:
@@ -64,8 +64,9 @@ def convergence(scene: Scene) -> str:
     block = scene.convergence
     if block is None:
         return _digest(None)
-    cases = [(name, case.bc, _cell(case.cell)) for name, case in scene.cases().items()]
-    return _digest([cases, block.orders, block.sizes, block.repeats, scene.load, scene.models])
+    cases = [(name, case.load, case.bc, _cell(case.cell)) for name, case in scene.cases().items()]
+    ladders = [block.orders, block.gradings, block.sizes, block.basis_order]
+    return _digest([cases, ladders, block.repeats, scene.models])
 
 
 def _cell(cell: Cell) -> dict[str, Any]:

@@ -108,6 +108,12 @@ Ratio = Annotated[
     WithJsonSchema({**quantity_schema("1", POSITIVE), "examples": [10]}),
 ]
 
+ModulusRatio = Annotated[
+    float,
+    BeforeValidator(partial(parse_quantity, unit="1", allow_infinite=True)),
+    WithJsonSchema({**quantity_schema("1", POSITIVE, rigid=True), "examples": [10]}),
+]
+
 
 def describe_input(name: str) -> str:
     """Say what an input of the cell is, with unit, range and default.

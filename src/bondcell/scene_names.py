@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field
@@ -41,4 +42,26 @@ def _show_loads(schema: dict[str, Any]) -> None:
 
 
 ModelName = Annotated[str, BeforeValidator(_model), Field(json_schema_extra=_show_models)]
+
+
+def _loads(value: Any) -> tuple[str, ...]:
+    known = known_loads()
+    names = value if isinstance(value, (list, tuple)) else [value]
+    sound = all(isinstance(name, str) and name in known for name in names)
+    if not (names and sound and len(set(names)) == len(names)):
+        raise NotAllowed(f"one of {', '.join(known)}, or a list of them, each once")
+    return tuple(names)
+
+
+def covering(loads: Collection[str]) -> tuple[str, ...]:
+    """Names of the models that cover at least one of the loads."""
+    from bondcell.models import MODELS
+
+    return tuple(name for name, model in MODELS.items() if set(loads) & set(model.loads))
+
+
 LoadName = Annotated[str, one_of(known_loads), Field(json_schema_extra=_show_loads)]
+LoadNames = Annotated[
+    tuple[LoadName, ...],
+    BeforeValidator(_loads, json_schema_input_type=LoadName | tuple[LoadName, ...]),
+]

@@ -23,6 +23,7 @@ from bondcell.scene_fields import (
     Block,
     Length,
     Modulus,
+    ModulusRatio,
     ParticleModulus,
     PoissonRatio,
     Ratio,
@@ -149,11 +150,19 @@ RatioAxis = Annotated[
     _Form,
 ]
 
+ModulusRatioAxis = Annotated[
+    Annotated[tuple[ModulusRatio, ...], _Distinct, _Listed, Tag("list")]
+    | Annotated[RatioRange, Tag("range")],
+    _Form,
+]
+
 
 def _axis(name: str) -> Any:
     if name in DERIVED:
         meaning = AXIS_NAMES[name][0].upper() + AXIS_NAMES[name][1:]
-        return Field(None, description=f"{meaning} [1], (0, inf); sets {DERIVED[name]}.")
+        also = " In a list also rigid: rigid particles in the matrix of `cell`."
+        end = also if name == "modulus_ratio" else ""
+        return Field(None, description=f"{meaning} [1], (0, inf); sets {DERIVED[name]}.{end}")
     return Field(None, description=describe_input(name))
 
 
@@ -169,7 +178,7 @@ class Sweep(Block):
     young_i: ParticleModulusAxis | None = _axis("young_i")
     young_j: ParticleModulusAxis | None = _axis("young_j")
     young_m: ModulusAxis | None = _axis("young_m")
-    modulus_ratio: RatioAxis | None = _axis("modulus_ratio")
+    modulus_ratio: ModulusRatioAxis | None = _axis("modulus_ratio")
     poisson_i: PoissonAxis | None = _axis("poisson_i")
     poisson_j: PoissonAxis | None = _axis("poisson_j")
     poisson_m: PoissonAxis | None = _axis("poisson_m")
@@ -220,7 +229,8 @@ def resolve_inputs(given: Mapping[str, Any], axes: Mapping[str, Any]) -> dict[st
     dict
         Input name -> value, the ratios replaced by what they set:
         ``young_m = young_i / modulus_ratio``, ``gap = gap_ratio radius_i``,
-        ``radius_j = radius_ratio radius_i``.
+        ``radius_j = radius_ratio radius_i``. An infinite ``modulus_ratio`` makes the particles
+        rigid and leaves the matrix as given.
 
     Examples
     --------
@@ -233,7 +243,24 @@ def resolve_inputs(given: Mapping[str, Any], axes: Mapping[str, Any]) -> dict[st
     if "modulus_ratio" in axes and "young_i" in inputs:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             inputs["young_m"] = inputs["young_i"] / axes["modulus_ratio"]
+        _make_rigid(inputs, given, np.isinf(axes["modulus_ratio"]))
     for ratio, name in (("gap_ratio", "gap"), ("radius_ratio", "radius_j")):
         if ratio in axes and "radius_i" in inputs:
             inputs[name] = axes[ratio] * inputs["radius_i"]
     return inputs
+
+
+def _make_rigid(inputs: dict[str, Any], given: Mapping[str, Any], rigid: Any) -> None:
+    """Rigid particles in the given matrix at the points of an infinite ratio."""
+    if not rigid.any():
+        return
+    choose = _where_labelled if hasattr(rigid, "dims") else np.where
+    inputs["young_m"] = choose(rigid, given.get("young_m", np.nan), inputs["young_m"])
+    for name in {"young_i", "young_j"} & set(inputs):
+        inputs[name] = choose(rigid, np.inf, inputs[name])
+
+
+def _where_labelled(condition: Any, chosen: Any, other: Any) -> Any:
+    if not hasattr(other, "where"):  # a plain number
+        return condition.copy(data=np.where(condition.values, chosen, other))
+    return other.where(~condition, chosen)

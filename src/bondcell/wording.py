@@ -59,7 +59,12 @@ NAMES = {
 }
 """Model names in tables and legends."""
 
-LADDERS = {"structured": "structured mesh, order p", "triangles": "triangles P2, size h"}
+LADDERS = {
+    "structured": "structured mesh, order p",
+    "structured_h": "structured mesh, order 4, size h",
+    "triangles": "triangles P2, size h",
+    "reduced_basis": "reduced basis, a point online",
+}
 """Discretisations in tables and legends."""
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}

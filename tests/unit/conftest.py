@@ -92,15 +92,17 @@ def make_convergence(cases: tuple[str, ...] = ("base", "narrow_gap")) -> xr.Data
         "seconds": [1e-7, 5e-8],
         "status": [0, 0],
     }.items():
-        study[f"model_{name}"] = ("model", np.array(values))
+        study[f"model_{name}"] = ("analytic_model", np.array(values))
         study[f"model_{name}"] = study[f"model_{name}"].expand_dims(case=len(cases))
     study["bc"] = ("case", ["roller"] * len(cases))
+    study["load"] = ("case", ["normal"] * len(cases))
+    study["unit"] = ("case", ["N m-1"] * len(cases))
     study["reference_error"] = ("case", [1e-9] * len(cases))
     return study.assign_coords(
         case=list(cases),
         method=["structured", "triangles"],
         level=np.arange(order.size),
-        model=["fsi", "slices"],
+        analytic_model=["fsi", "slices"],
     )
 
 

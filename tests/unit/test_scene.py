@@ -366,7 +366,8 @@ def test_scene_keys_are_the_documented_ones():
         "sweep",
         "models",
         "reference",
-        "load",
+        "loads",
         "contributions",
+        "stability",
         "convergence",
     )

@@ -7,6 +7,8 @@ rule analytic:
         sources=sources("analytic.py"),
     output:
         "results/{scene}/batches/analytic_{part}.nc",
+    wildcard_constraints:
+        part=r"([a-z]+_)?\d+of\d+",
     params:
         digest=lambda wildcards: scene_of(wildcards).models_digest,
     message:

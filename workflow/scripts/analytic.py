@@ -5,14 +5,15 @@ from bondcell.batch_files import describe, write_batch
 from bondcell.batches import Batch
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
+from bondcell.result_names import models_with
 from bondcell.study import build_study
 
 batch = Batch.parse(f"analytic_{snakemake.wildcards.part}")
 with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
     digest = snakemake.params.digest
     scene = planned_scene(snakemake.input.scene, models_digest=digest)
-    result = compute_analytic(
-        build_study(scene), batch, scene.models, scene.load, scene.contributions
-    )
+    load = batch.method.partition("_")[2] or scene.load
+    models = models_with(scene, load)
+    result = compute_analytic(build_study(scene), batch, models, load, scene.contributions)
     write_batch(result, snakemake.output[0], digest)
     log.result = describe(result)

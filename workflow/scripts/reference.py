@@ -12,6 +12,6 @@ with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
     digest = snakemake.params.digest
     scene = planned_scene(snakemake.input.scene, reference_digest=digest)
     tolerance = scene.reference.tolerance
-    result = compute_reference(build_study(scene), batch, tolerance, scene.load, log.progress)
+    result = compute_reference(build_study(scene), batch, tolerance, log.progress)
     write_batch(result, snakemake.output[0], digest)
     log.result = describe(result)

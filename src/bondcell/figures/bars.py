@@ -6,7 +6,13 @@ import numpy as np
 import xarray as xr
 
 from bondcell.figures.style import GREY, LINES, REFERENCES, Drawing, mathtext, new_figure
-from bondcell.result_view import is_reference, load_name, reference_names, stiffness_unit
+from bondcell.result_view import (
+    is_reference,
+    load_name,
+    model_names,
+    reference_names,
+    stiffness_unit,
+)
 from bondcell.wording import STIFFNESS_SYMBOLS, model_name, percent, quantity, unit_text
 
 
@@ -20,8 +26,9 @@ def draw_bars(study: xr.Dataset, name: str = "stiffness") -> Drawing:
     name
         File name without suffix.
     """
-    stiffness = study["stiffness"].squeeze(drop=True).reset_coords(drop=True)
-    models = [str(model) for model in np.atleast_1d(study["model"].values)]
+    models = model_names(study)
+    stiffness = study["stiffness"].sel(model=models)
+    stiffness = stiffness.squeeze(drop=True).reset_coords(drop=True)
     values = np.atleast_1d(stiffness.values).astype(float)
     unit = stiffness_unit(study)
     load = load_name(study)
