@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
@@ -144,3 +145,52 @@ class CellOperators:
         answer = solve_symmetric(system[np.ix_(free, free)], right[free])
         response = constants.shear_m * (constant - right[free].T @ answer)
         return np.asarray(response / 2 if self.is_half else response)
+
+    def response_by_ratio(self, poisson_m: float, poisson: float, ratios: FloatArray) -> FloatArray:
+        """Responses at many moduli of equal particles from one eigenvalue problem.
+
+        Once the pressures are eliminated, ``X = S + rho P`` is diagonal in the eigenvectors of
+        ``S v = lambda P v``, ``v^T P v = 1``, and ``K = c - sum (v^T b)^2 / (lambda + rho)``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (ratios, motions, motions), unit shear modulus of the matrix.
+        """
+        system = self.matrix_system(poisson_m)
+        moving = self.is_displacement
+        m = self.motions
+        particle = np.zeros((self.size, self.size))
+        for k, at in enumerate(self.of_particle):
+            particle[np.ix_(at, at)] = self.particle_system(k, poisson)
+        pressures = self.of_matrix[~moving[self.of_matrix]]
+        matrix, coupling, own = _eliminate(
+            system.matrix, system.coupling[:, :m], system.own[:m, :m], pressures
+        )
+        others = np.setdiff1d(np.flatnonzero(~moving), pressures)
+        nothing = np.zeros((self.size, m))
+        particle, _, _ = _eliminate(particle, nothing, np.zeros((m, m)), others)
+        inside = np.ix_(moving, moving)
+        eigenvalues, vectors = scipy.linalg.eigh(
+            matrix[inside], particle[inside], check_finite=False
+        )
+        forces = vectors.T @ coupling[moving]
+        shares = 1 / (eigenvalues + ratios[:, None])
+        response = own - np.einsum("km,rk,kn->rmn", forces, shares, forces, optimize=True)
+        return np.asarray(response / 2 if self.is_half else response)
+
+
+def _eliminate(
+    matrix: FloatArray, coupling: FloatArray, own: FloatArray, gone: NDArray[np.int64]
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Eliminate some unknowns, whose rows are left to be ignored."""
+    if not gone.size:
+        return matrix, coupling, own
+    rows = np.concatenate((matrix[gone], coupling[gone]), axis=1)
+    solved = np.linalg.solve(matrix[np.ix_(gone, gone)], rows)
+    size = len(matrix)
+    return (
+        matrix - rows[:, :size].T @ solved[:, :size],
+        coupling - rows[:, :size].T @ solved[:, size:],
+        own - rows[:, size:].T @ solved[:, size:],
+    )

@@ -8,15 +8,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.fem.cell_mesh import Geometry
+from bondcell.fem.cell_mesh import Geometry, Grading
 from bondcell.fem.ladder import Ladder
 from bondcell.fem.materials import Materials
-from bondcell.fem.structured import find_load, geometry_of
+from bondcell.fem.structured import Load, find_load, geometry_of
 from bondcell.fem.threads import one_thread
 from bondcell.status import Status
 
 SOFT_RATIO = 0.3
 """Modulus ratio below which the cusp beside a particle is followed farther."""
+
+STIFF_RATIO, STIFF_CUT = 300.0, 0.04
+"""Modulus ratio from which the cusp may be cut early, and where [radii]: costs below 1e-8."""
+
+FOLLOWED_CUT = 1e-4
+"""Loads whose usual cut is below this hold the side: there the cusp counts at any ratio."""
 
 SOFT_CUT, SMALLEST_CUT = 1e-2, 1e-6
 """Where the cusp beside a soft particle is cut, over its modulus ratio, and the least [radii]."""
@@ -80,12 +86,12 @@ def solve(
     blocked = _is_blocked(materials) & ((load, bc) == ("normal", "confined"))
     answer.status[blocked] = Status.diverges
     half = materials.is_mirrored & geometry.is_mirrored
-    cuts = _cuts(geometry, materials, entry.grading.foot)
+    gradings = _gradings(geometry, materials, entry)
     for is_half in np.unique(half):
-        for cut in np.unique(cuts):
-            at = np.flatnonzero((half == is_half) & (cuts == cut) & ~blocked)
+        for grading in sorted(set(gradings), key=lambda g: g.foot):
+            mine = np.array([own == grading for own in gradings])
+            at = np.flatnonzero((half == is_half) & mine & ~blocked)
             if at.size:
-                grading = replace(entry.grading, foot=float(cut))
                 own = materials.take(at)
                 ladder = Ladder(geometry, entry, bool(is_half), grading, own, tolerance)
                 ladder.error_estimate += _unresolved_cusp(geometry, own)
@@ -129,23 +135,37 @@ def _is_blocked(materials: Materials) -> NDArray[np.bool_]:
     return np.asarray(rigid & (materials.poisson_m == 0.5))
 
 
-def _softness(geometry: Geometry, materials: Materials) -> FloatArray:
-    """Least modulus ratio of the particles that touch the lateral surface; else infinite."""
+def _touches_side(geometry: Geometry) -> NDArray[np.bool_]:
+    """Which of the spheres touch the lateral surface, where the matrix runs into a cusp."""
     radii = np.array([geometry.radius_i, geometry.radius_j])
-    return np.where(radii == geometry.cylinder_radius, materials.ratios, np.inf).min(axis=1)
+    return np.asarray(radii == geometry.cylinder_radius)
 
 
-def _cuts(geometry: Geometry, materials: Materials, usual: float) -> FloatArray:
-    """Where the cusp at the foot is cut, in radii: later where a soft particle makes it carry load.
+def _softness(geometry: Geometry, materials: Materials) -> FloatArray:
+    """Least modulus ratio of the particles beside a cusp; infinite if all are rigid, or none is."""
+    return np.where(_touches_side(geometry), materials.ratios, np.inf).min(axis=1)
+
+
+def _gradings(geometry: Geometry, materials: Materials, load: Load) -> list[Grading]:
+    """How finely each point's mesh follows the cusps at the feet of spheres that touch the side.
 
     What is cut off matters once the cusp is as stiff as the particle next to it, at a height in
-    proportion to the modulus ratio. Cuts come in decades, so that points share meshes.
+    proportion to the modulus ratio; beside a stiff particle it hardly strains, unless the side is
+    held, and nor does the particle's own rim. Cuts come in few sizes, so that points share meshes.
     """
+    usual = load.grading
     softness = _softness(geometry, materials)
-    with np.errstate(invalid="ignore"):
+    with np.errstate(invalid="ignore", divide="ignore"):
         decades = 10.0 ** np.floor(np.log10(SOFT_CUT * softness))
-    wanted = np.where(softness < SOFT_RATIO, np.maximum(decades, SMALLEST_CUT), usual)
-    return np.minimum(wanted, usual)
+    cuts = np.where(softness < SOFT_RATIO, np.maximum(decades, SMALLEST_CUT), usual.foot)
+    cuts = np.minimum(cuts, usual.foot)
+    touches = _touches_side(geometry)
+    stiff = replace(usual, foot=STIFF_CUT, corner=0.0 if touches.all() else usual.corner)
+    may_coarsen = touches.any() and usual.foot > FOLLOWED_CUT
+    return [
+        stiff if may_coarsen and ratio >= STIFF_RATIO else replace(usual, foot=cut)
+        for ratio, cut in zip(softness.tolist(), cuts.tolist(), strict=True)
+    ]
 
 
 def _unresolved_cusp(geometry: Geometry, materials: Materials) -> FloatArray:

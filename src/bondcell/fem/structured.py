@@ -188,6 +188,19 @@ class CellSolver:
         way = np.max([answer.way for answer in answers], axis=0)
         return Sweep(self._own(joined), self._own(self._join(errors)), way, coupling)
 
+    def by_ratio(self, poisson_m: float, poisson: float, ratios: FloatArray) -> FloatArray:
+        """Stiffness over the matrix's shear modulus of equal particles at many modulus ratios.
+
+        Parameters
+        ----------
+        poisson_m, poisson
+            Poisson's ratios of matrix and particles.
+        ratios
+            Shear modulus of the particles over the matrix's, infinite if rigid.
+        """
+        responses = [o.response_by_ratio(poisson_m, poisson, ratios) for o in self._operators]
+        return self._own(self._join(responses))
+
     def _join(self, responses: list[FloatArray]) -> FloatArray:
         return self._load.join(responses, self._length) if self._half else responses[0]
 

@@ -6,17 +6,20 @@ Every matrix is for unit shear modulus and depends on Poisson's ratio alone, thr
     [ D    R^T  ] [u]     D: shear matrix, R: root of the bulk matrix, p = c R u
     [ R   -1/c  ] [p]
 
-so ``c = inf`` (an incompressible solid) is as good as any other value. Two eliminations follow:
-the unknowns inside each element, batched; then everything of the part that is not on the interface.
+so ``c = inf`` (an incompressible solid) is as good as any other value. Eliminations follow: the
+displacements inside each element, which is positive definite and the same for every ``c``; the
+element's own pressures; then everything of the part that is not on the interface.
 Only one pressure stays, because an incompressible part whose whole boundary is held is singular.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.linalg import solve_triangular
 
 from bondcell.cell import FloatArray
 from bondcell.fem.element_matrices import ElementMatrices
@@ -84,15 +87,36 @@ class Substructure:
 
     def _condense_elements(self, compliance: float) -> FloatArray:
         """Element matrices on (boundary unknowns, mean pressure), shape (elements, m, m)."""
+        retained, link, gone = (block.copy() for block in self._without_inner)
+        means = np.arange(self.outer.size, retained.shape[1])
+        retained[:, means, means] -= compliance
+        others = np.arange(gone.shape[1])
+        gone[:, others, others] += compliance
+        return np.asarray(retained + link.transpose(0, 2, 1) @ np.linalg.solve(gone, link))
+
+    @cached_property
+    def _without_inner(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What is left of the element systems without the displacements inside, at ``1/c = 0``.
+
+        They meet no Poisson's ratio, so they go once. Blocks: (boundary, mean pressure) with
+        itself, the other pressures with it, and the negative of the other pressures with
+        themselves.
+        """
         outer, inner, kept = self.outer, self.inner, self._kept_pressures
-        root = self.matrices.bulk_root
-        retained = _mixed_block(self.matrices, outer, root[:, :kept], compliance)
-        gone = _mixed_block(self.matrices, inner, root[:, kept:], compliance)
-        link = np.zeros((len(root), gone.shape[1], retained.shape[1]))
-        link[:, : inner.size, : outer.size] = self.matrices.shear[:, inner[:, None], outer]
-        link[:, inner.size :, : outer.size] = root[:, kept:, outer]
-        link[:, : inner.size, outer.size :] = root[:, :kept, inner].transpose(0, 2, 1)
-        return np.asarray(retained - link.transpose(0, 2, 1) @ np.linalg.solve(gone, link))
+        shear, root = self.matrices.shear, self.matrices.bulk_root
+        own = shear[:, inner[:, None], inner]
+        # Transposed, so that each element's block is in the order that LAPACK wants.
+        link = np.concatenate((shear[:, outer[:, None], inner], root[:, :, inner]), axis=1)
+        factors = np.linalg.cholesky(own)
+        for block, factor in zip(link, factors, strict=True):
+            block[...] = solve_triangular(factor, block.T, lower=True, check_finite=False).T
+        rest = -(link @ link.transpose(0, 2, 1))
+        size = outer.size
+        rest[:, :size, :size] += shear[:, outer[:, None], outer]
+        rest[:, size:, :size] += root[:, :, outer]
+        rest[:, :size, size:] += root[:, :, outer].transpose(0, 2, 1)
+        at = size + kept
+        return rest[:, :at, :at], rest[:, at:, :at], -rest[:, at:, at:]
 
     def _condense_part(self, element: FloatArray) -> Condensed:
         """Assemble the skeleton and eliminate all but the interface and the first pressure."""
@@ -150,21 +174,3 @@ class Substructure:
             numbers = np.concatenate((numbers, means[:, None]), axis=1)
             size += count
         return numbers, kept, size
-
-
-def _mixed_block(
-    matrices: ElementMatrices,
-    rows: NDArray[np.int64],
-    root: FloatArray,
-    compliance: float,
-) -> FloatArray:
-    """Element matrices of some displacement unknowns with some pressures, both their own."""
-    elements, pressures = root.shape[:2]
-    size = rows.size + pressures
-    block = np.zeros((elements, size, size))
-    block[:, : rows.size, : rows.size] = matrices.shear[:, rows[:, None], rows]
-    block[:, rows.size :, : rows.size] = root[:, :, rows]
-    block[:, : rows.size, rows.size :] = root[:, :, rows].transpose(0, 2, 1)
-    at = np.arange(rows.size, size)
-    block[:, at, at] = -compliance
-    return block
