@@ -13,7 +13,9 @@ export OPENBLAS_NUM_THREADS ?= 1
 # Rules may call the environment's commands by name.
 WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
 
-.PHONY: help study test test-all lint format lock schema bench setup system-deps clean
+SURROGATE = src/bondcell/models/data/surrogate.npz
+
+.PHONY: surrogate help study test test-all lint format lock schema bench setup system-deps clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
@@ -40,6 +42,10 @@ format: setup ## format the sources
 	$(RUN) ruff check --fix .
 	$(RUN) ruff format .
 	$(RUN) snakefmt Snakefile workflow
+
+surrogate: setup ## rebuild the surrogate's data from the reference, minutes
+	$(WITH_PATH) $(RUN) snakemake --cores $(CORES) results/surrogate.npz
+	cp results/surrogate.npz $(SURROGATE)
 
 schema: setup ## write params/*.schema.json, the scene format for editors
 	$(RUN) bondcell.scene_schema

@@ -2,6 +2,7 @@
 #   snakemake                              every scene of params/study.yaml and the report
 #   snakemake results/<scene>/study.nc     one scene, listed or not
 #   snakemake results/report.html          the report
+#   snakemake results/surrogate.npz        the surrogate's data, see `make surrogate`
 from snakemake.utils import min_version
 
 min_version("9.5")
@@ -13,6 +14,7 @@ include: "workflow/rules/collect.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/report.smk"
+include: "workflow/rules/surrogate.smk"
 
 
 rule all:

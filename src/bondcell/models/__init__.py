@@ -10,6 +10,7 @@ generatrix: generatrix lines
 slices: plane slices
 parallel_bond: parallel bond
 cementation: cementation theory
+surrogate: interpolated finite elements
 fe: finite elements
 """
 
@@ -26,11 +27,12 @@ from bondcell.models.generatrix import GENERATRIX
 from bondcell.models.model import Model
 from bondcell.models.parallel_bond import PARALLEL_BOND
 from bondcell.models.slices import SLICES
+from bondcell.models.surrogate import SURROGATE
 
 MODELS: Mapping[str, Model] = MappingProxyType(
     {
         model.name: model
-        for model in (FSI, GENERAL, GENERATRIX, SLICES, PARALLEL_BOND, CEMENTATION, FE)
+        for model in (FSI, GENERAL, GENERATRIX, SLICES, PARALLEL_BOND, CEMENTATION, SURROGATE, FE)
     }
 )
 """Every model by the name that ``bondcell.evaluate`` takes."""
