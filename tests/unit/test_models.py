@@ -102,7 +102,7 @@ class TestCheckValues:
 
 class TestStructure:
     def test_names(self) -> None:
-        expected = (*NETWORKS, "parallel_bond", "cementation", "fe")
+        expected = (*NETWORKS, "parallel_bond", "cementation", "surrogate", "fe")
         assert tuple(MODELS) == expected
         for name, model in MODELS.items():
             assert model.name == name
