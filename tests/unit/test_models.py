@@ -22,7 +22,8 @@ BASE = {
     "poisson_i": 0.25,
     "poisson_m": 0.46,
 }
-ANALYTIC = tuple(name for name, model in MODELS.items() if not model.is_reference)
+# The surrogate is data with a range of its own; it has its own tests.
+ANALYTIC = tuple(name for name in MODELS if name not in ("fe", "surrogate"))
 NETWORKS = ("fsi", "general", "generatrix", "slices")
 """Models that are networks of springs, each proportional to one modulus."""
 
