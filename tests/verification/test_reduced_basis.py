@@ -6,8 +6,9 @@ import pytest
 from bondcell.cell import Cell
 from bondcell.fem.cell_mesh import Geometry, build_cell_mesh
 from bondcell.fem.cell_operators import CellOperators
+from bondcell.fem.interpolated_matrix import InterpolatedMatrix
 from bondcell.fem.materials import Materials
-from bondcell.fem.reduced_basis import InterpolatedMatrix, Points, ReducedBasis
+from bondcell.fem.reduced_basis import Points, ReducedBasis
 from bondcell.fem.reference import solve
 from bondcell.fem.structured import LOADS, OFFSET
 from bondcell.fem.sweep import Way

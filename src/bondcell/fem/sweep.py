@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_operators import CellOperators
+from bondcell.fem.interpolated_matrix import NODES
 from bondcell.fem.materials import Materials
-from bondcell.fem.reduced_basis import NODES, Points, ReducedBasis
+from bondcell.fem.reduced_basis import Points, ReducedBasis
 
 REFINEMENTS = 6
 """How often the greedy search may look again where the bound is still too large."""
@@ -57,7 +58,7 @@ def respond(
     tolerance
         Relative error that the reduction may add; points that miss it are solved directly.
     offset
-        See `reduced_basis.InterpolatedMatrix`.
+        See `interpolated_matrix.InterpolatedMatrix`.
     """
     count, m = materials.count, operators.motions
     answer = Responses(
