@@ -96,6 +96,23 @@ def accuracy_table(study_result: xr.Dataset) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=columns)
 
 
+def accuracy_of_loads(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:
+    """The accuracy tables of all loads below each other, with a first column ``load``.
+
+    Parameters
+    ----------
+    loads
+        Load -> result, see `bondcell.load_groups.read_loads`.
+    """
+    tables = []
+    for load, study in loads.items():
+        table = accuracy_table(study)
+        table.insert(0, "load", load)
+        tables.append(table)
+    filled = [table for table in tables if not table.empty]
+    return pd.concat(filled, ignore_index=True) if filled else tables[0]
+
+
 _LEADING = (
     "model",
     "reference",

@@ -103,7 +103,7 @@ def combine_cases(cases: Mapping[str, xr.Dataset]) -> xr.Dataset:
         Case name -> its result, as `bondcell.convergence_run.run_case` gives it.
     """
     names = xr.DataArray(list(cases), dims="case", name="case", attrs={"long_name": "case"})
-    return xr.concat(list(cases.values()), dim=names, combine_attrs="drop_conflicts")
+    return xr.concat(list(cases.values()), dim=names, join="outer", combine_attrs="drop_conflicts")
 
 
 def convergence_table(study: xr.Dataset) -> pd.DataFrame:

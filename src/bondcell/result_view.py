@@ -80,4 +80,6 @@ def stiffness_unit(study: xr.Dataset) -> str:
 
 def load_name(study: xr.Dataset) -> str:
     """Load of the study, the first word of the stiffness' long name."""
+    if "stiffness" not in study:
+        return "normal"
     return str(study["stiffness"].attrs.get("long_name", "normal")).split()[0]

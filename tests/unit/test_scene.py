@@ -285,12 +285,24 @@ def test_shipped_scenes_ask_what_they_are_for():
     assert load_scene(PARAMS / "gap_modulus.yaml").points == 13 * 13 * 3
     convergence = load_scene(PARAMS / "convergence.yaml")
     assert convergence.cases()["base"].cell == Cell.from_values(**SI)
-    assert len(convergence.cases()) == 3
+    assert {case.load for case in convergence.cases().values()} == {
+        "normal",
+        "shear",
+        "torsion",
+        "bending",
+    }
     assert load_scene(PARAMS / "smoke.yaml").points == 4
 
 
 def test_study_list():
-    assert SCENES == ("figure4", "gap_modulus", "convergence", "smoke")
+    assert SCENES == (
+        "figure4",
+        "gap_modulus",
+        "convergence",
+        "extreme",
+        "extreme_loads",
+        "smoke",
+    )
     assert validate_file(PARAMS / "study.yaml") == ((), ())
     first = (PARAMS / "study.yaml").read_text().splitlines()[0]
     assert first == "# yaml-language-server: $schema=study.schema.json"

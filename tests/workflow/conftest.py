@@ -26,6 +26,8 @@ cell: {radius_i: 7.5 mm, young_i: 30 GPa, poisson_i: 0.25, poisson_m: 0.3}
 sweep: {gap: [0.5 mm, 2 mm], modulus_ratio: [10, 1e4]}
 models: [fsi, generatrix]
 reference: {bc: [roller, confined], tolerance: 1e-2}
+load: [normal, torsion]
+stability: true
 convergence:
   cases: {base: {gap: 1 mm, young_m: 1 MPa}}
   orders: [3, 4]

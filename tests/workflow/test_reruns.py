@@ -3,7 +3,14 @@
 import pytest
 
 REPORT = {"report": 1}
-FULL = {"collect": 1, "accuracy": 1, "convergence_table": 1, "figures": 1, "report": 1}
+FULL = {
+    "collect": 1,
+    "accuracy": 1,
+    "stability": 1,
+    "convergence_table": 1,
+    "figures": 1,
+    "report": 1,
+}
 BOTH = FULL | {"collect": 2, "figures": 2}
 
 SOURCES = {
@@ -13,12 +20,12 @@ SOURCES = {
     "src/bondcell/batch_plan.py": {},
     "src/bondcell/cli/__init__.py": {},
     "src/bondcell/evaluate.py": BOTH | {"convergence": 1},
-    "src/bondcell/fem/cell_mesh.py": FULL | {"reference": 2, "convergence": 1},
+    "src/bondcell/fem/cell_mesh.py": FULL | {"reference": 3, "convergence": 1},
     "src/bondcell/fem/gmsh_mesh.py": FULL | {"convergence": 1},
-    "src/bondcell/fem/reference.py": FULL | {"reference": 2},
+    "src/bondcell/fem/reference.py": FULL | {"reference": 3},
     "src/bondcell/merge.py": BOTH,
     "src/bondcell/models/fsi.py": BOTH | {"convergence": 1},
-    "src/bondcell/storage.py": BOTH | {"reference": 2, "convergence": 1},
+    "src/bondcell/storage.py": BOTH | {"reference": 3, "convergence": 1},
 }
 
 SCENES = {
@@ -26,9 +33,9 @@ SCENES = {
     "same gap in other words": ("gap: [0.5 mm", "gap: [5.0e-4", {}),
     "title": ("title: All there is", "title: All", FULL),
     "models": ("models: [fsi, generatrix]", "models: [fsi]", FULL | {"convergence": 1}),
-    "tolerance": ("tolerance: 1e-2", "tolerance: 1e-3", FULL | {"reference": 2}),
+    "tolerance": ("tolerance: 1e-2", "tolerance: 1e-3", FULL | {"reference": 3}),
     "orders": ("orders: [3, 4]", "orders: [3, 5]", FULL | {"convergence": 1}),
-    "gap": ("gap: [0.5 mm", "gap: [0.6 mm", FULL | {"reference": 2}),
+    "gap": ("gap: [0.5 mm", "gap: [0.6 mm", FULL | {"reference": 3}),
 }
 
 

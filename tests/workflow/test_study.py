@@ -2,7 +2,9 @@
 
 import netCDF4
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 
 from bondcell.sources import script_sources
 from bondcell.storage import read_dataset
@@ -34,7 +36,9 @@ def test_whole_study(full_run):
     workspace, done, _ = full_run
     assert done.returncode == 0, done.stdout
     results = workspace / "results"
-    for name in ("full/study.nc", "full/accuracy.csv", "full/convergence.csv", "report.html"):
+    for name in ("full/study.nc", "full/accuracy.csv", "full/stability.csv"):
+        assert (results / name).stat().st_size > 0
+    for name in ("full/convergence.csv", "report.html"):
         assert (results / name).stat().st_size > 0
     assert list((results / "full/figures").glob("*.svg"))
     assert not (results / "plain/accuracy.csv").exists()
@@ -55,6 +59,7 @@ def test_progress_is_said_in_lines(full_run):
         ("convergence", {"skfem"}),
         ("collect", set()),
         ("accuracy", set()),
+        ("stability", set()),
         ("convergence_table", set()),
         ("figures", {"matplotlib"}),
     ],
@@ -74,7 +79,7 @@ def test_sources_of_a_rule_are_what_its_jobs_loaded(full_run):
     workspace, _, modules = full_run
     package = workspace / "src/bondcell"
     for script in (workspace / "workflow/scripts").glob("*.py"):
-        if script.stem == "analytic":  # these scenes are too small for such a job
+        if script.stem in ("analytic", "surrogate"):  # these scenes need no such job
             continue
         declared = {
             path.parts[path.parts.index("bondcell") + 1 :] for path in script_sources(script)
@@ -105,11 +110,24 @@ def test_file_of_a_scene(workspace):
     assert "k_int" in read_dataset(workspace / "results/plain/study.nc")
 
 
+def test_other_loads_have_a_group_each_and_the_file_is_a_tree(workspace):
+    path = workspace / "results/full/study.nc"
+    torsion = read_dataset(path, "torsion")
+    assert torsion.stiffness.attrs["units"] == "N m rad-1"
+    assert (torsion.status.sel(model="fe") == 0).all()
+    with xr.open_datatree(path) as tree:
+        assert set(tree.children) == {"convergence", "torsion"}
+    table = pd.read_csv(workspace / "results/full/stability.csv")
+    assert table["load"].value_counts().to_dict() == {"normal": 8, "torsion": 4}
+    assert set(pd.read_csv(workspace / "results/full/accuracy.csv")["load"]) == {"normal"}
+
+
 def test_every_variable_is_described(workspace):
     with netCDF4.Dataset(workspace / "results/full/study.nc") as file:
         assert file.Conventions == "CF-1.11"
-        assert set(file.groups) == {"convergence"}
-        for variable in [*file.variables.values(), *file["convergence"].variables.values()]:
+        assert set(file.groups) == {"convergence", "torsion"}
+        groups = [file, *file.groups.values()]
+        for variable in (found for group in groups for found in group.variables.values()):
             assert "long_name" in variable.ncattrs(), variable.name
             if variable.dtype is not str and "flag_values" not in variable.ncattrs():
                 assert "units" in variable.ncattrs() or variable.name == "level", variable.name

@@ -77,6 +77,8 @@ def scene_results(scene):
     files = [f"{folder}/study.nc", f"{folder}/figures"]
     if scene.models and scene.reference:
         files.append(f"{folder}/accuracy.csv")
+    if scene.stability:
+        files.append(f"{folder}/stability.csv")
     if scene.convergence:
         files.append(f"{folder}/convergence.csv")
     return files

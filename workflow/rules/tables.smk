@@ -28,3 +28,19 @@ rule convergence_table:
         "{wildcards.scene}: error and time of each discretisation"
     script:
         "../scripts/convergence_table.py"
+
+
+rule stability:
+    input:
+        study="results/{scene}/study.nc",
+        sources=sources("stability.py"),
+    output:
+        report(
+            "results/{scene}/stability.csv",
+            caption="../report/stability.rst",
+            category="{scene}",
+        ),
+    message:
+        "{wildcards.scene}: estimate, flag and cost of every point"
+    script:
+        "../scripts/stability.py"

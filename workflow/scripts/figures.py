@@ -4,14 +4,15 @@ from pathlib import Path
 
 from bondcell.figures import draw_scene
 from bondcell.jobs import job
+from bondcell.load_groups import read_loads
 from bondcell.planned_scene import planned_scene
 from bondcell.storage import read_dataset
 
 with job(f"{snakemake.wildcards.scene}: figures") as log:
     scene = planned_scene(snakemake.input.scene, digest=snakemake.params.digest)
-    study = read_dataset(snakemake.input.study)
+    study, *others = read_loads(snakemake.input.study).values()
     group = "convergence" if scene.convergence else None
     convergence = read_dataset(snakemake.input.study, group) if group else None
     folder = Path(snakemake.output[0])
     folder.mkdir(parents=True, exist_ok=True)
-    log.result = f"{len(draw_scene(scene, study, convergence, folder))} files"
+    log.result = f"{len(draw_scene(scene, study, convergence, folder, others))} files"

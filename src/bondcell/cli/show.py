@@ -36,13 +36,15 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the overview; draw if asked."""
-    from bondcell.storage import read_dataset
+    from bondcell.load_groups import read_loads
 
-    study = read_dataset(arguments.file)
+    study, *others = read_loads(arguments.file).values()
     ladders = _convergence(arguments.file)
     _check_content(study, ladders, arguments.file)
     _check_plot(study, arguments)
     print(_overview(study, arguments.file))
+    for other in others:
+        print(f"\n{_results(other)}")
     if ladders is not None:
         print(f"\nconvergence study, errors against the finest level\n{_ladders(ladders)}")
     if arguments.plot:
@@ -83,15 +85,22 @@ def _check_plot(study: xr.Dataset, arguments: argparse.Namespace) -> None:
 
 
 def _overview(study: xr.Dataset, path: str) -> str:
-    from bondcell.accuracy import accuracy_table
-
     blocks = [_heading(study, path), _axes(study)]
     if "stiffness" in study and "model" in study["stiffness"].dims:
-        blocks.append(_models(study))
-        table = accuracy_table(study)
-        if not table.empty:
-            blocks.append(_errors(study, table))
+        blocks.append(_results(study))
     return "\n\n".join(block for block in blocks if block)
+
+
+def _results(study: xr.Dataset) -> str:
+    """Values and errors of the models under one load."""
+    from bondcell.accuracy import accuracy_table
+    from bondcell.result_view import load_name
+
+    blocks = [f"load {load_name(study)}\n{_models(study)}"]
+    table = accuracy_table(study)
+    if not table.empty:
+        blocks.append(_errors(study, table))
+    return "\n\n".join(blocks)
 
 
 def _heading(study: xr.Dataset, path: str) -> str:
@@ -124,12 +133,12 @@ def _axes(study: xr.Dataset) -> str:
 
 def _models(study: xr.Dataset) -> str:
     from bondcell.cli.text_table import text_table
-    from bondcell.result_view import stiffness_unit
+    from bondcell.result_view import model_names, stiffness_unit
     from bondcell.wording import quantity
 
     unit = stiffness_unit(study)
     rows = []
-    for name in study["model"].values:
+    for name in model_names(study):
         here = study.sel(model=name)
         values = here["stiffness"].values[~here["stiffness"].isnull().values]
         span = "no value"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,8 +10,9 @@ from bondcell.figures.bars import draw_bars
 from bondcell.figures.convergence import convergence_drawings
 from bondcell.figures.curves import draw_curves
 from bondcell.figures.error_maps import draw_error_maps
+from bondcell.figures.stability import draw_stability
 from bondcell.figures.style import Drawing, drawing_style, save
-from bondcell.result_view import model_names, swept_axes
+from bondcell.result_view import load_name, model_names, swept_axes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -20,7 +21,11 @@ if TYPE_CHECKING:
 
 
 def draw_scene(
-    scene: Scene, study: xr.Dataset, convergence: xr.Dataset | None, folder: Path
+    scene: Scene,
+    study: xr.Dataset,
+    convergence: xr.Dataset | None,
+    folder: Path,
+    others: Sequence[xr.Dataset] = (),
 ) -> list[Path]:
     """Draw everything a scene's results have to show.
 
@@ -34,6 +39,8 @@ def draw_scene(
         Result of its convergence study, if any.
     folder
         Where the figures go.
+    others
+        Results of the sweep under the scene's other loads.
 
     Returns
     -------
@@ -41,26 +48,35 @@ def draw_scene(
         Every figure as SVG and PNG, captions and descriptions in the files' metadata.
     """
     with drawing_style():
-        drawings = [*sweep_drawings(study)]
+        loads = {load_name(found): found for found in (study, *others)}
+        drawings = []
+        if scene.stability:
+            drawings.append(draw_stability(loads))
+        if scene.models or not scene.stability:
+            drawings += sweep_drawings(study)
+            for load, found in list(loads.items())[1:]:
+                drawings += sweep_drawings(found, f"_{load}")
         if convergence is not None:
             drawings += convergence_drawings(convergence)
         return [path for drawing in drawings for path in save(drawing, folder)]
 
 
-def sweep_drawings(study: xr.Dataset) -> Iterator[Drawing]:
+def sweep_drawings(study: xr.Dataset, suffix: str = "") -> Iterator[Drawing]:
     """What a sweep's result has to show: bars at one point, else curves, and maps if there are any.
 
     Parameters
     ----------
     study
         A sweep's result.
+    suffix
+        End of the figures' names.
     """
     if not model_names(study):
         return
     if not swept_axes(study):
-        yield draw_bars(study)
+        yield draw_bars(study, f"stiffness{suffix}")
         return
-    yield draw_curves(study)
-    maps = draw_error_maps(study)
+    yield draw_curves(study, f"stiffness{suffix}")
+    maps = draw_error_maps(study, f"error_maps{suffix}")
     if maps is not None:
         yield maps

@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 LARGEST_SVG = 700_000
 """A larger SVG [bytes] is embedded as its PNG."""
 
-ORDER = ("error_maps", "convergence_time", "convergence_dof")
+ORDER = ("stability", "error_maps", "convergence_time", "convergence_dof", "convergence_basis")
 """Figures that come first, by name."""
 
 _DUBLIN_CORE = "{http://purl.org/dc/elements/1.1/}"

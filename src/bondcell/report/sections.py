@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import xarray as xr
 
 from bondcell.accuracy import accuracy_table
+from bondcell.load_groups import read_loads
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
 from bondcell.report.findings import Finding
 from bondcell.report.setup_table import Line, setup_lines
+from bondcell.report.stability_part import stability_findings, stability_lines
 from bondcell.report.sweep_findings import sweep_findings
 from bondcell.report.tables import Table, accuracy_lines, influence_lines, value_lines
 from bondcell.result_view import model_names
+from bondcell.stability import stability_table
 from bondcell.storage import read_dataset
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
 
-FILES = ("study.nc", "accuracy.csv", "convergence.csv")
+FILES = ("study.nc", "accuracy.csv", "stability.csv", "convergence.csv")
 """Files of a scene that the page links."""
 
 
@@ -62,13 +65,22 @@ def build_section(scene: Scene, results: Path) -> Section | None:
     folder = results / scene.name
     if not (folder / "study.nc").is_file():
         return None
-    study = read_dataset(folder / "study.nc")
+    loads = read_loads(folder / "study.nc")
+    study = next(iter(loads.values()))
     ladders = None
     if scene.convergence is not None:
         ladders = read_dataset(folder / "study.nc", group="convergence")
-    table = accuracy_table(study)
-    findings = sweep_findings(study, table)
-    tables = [accuracy_lines(study, table), influence_lines(study), value_lines(study)]
+    findings: list[Finding] = []
+    tables: list[Table | None] = []
+    if scene.stability:
+        points = stability_table(loads)
+        findings += stability_findings(points, study)
+        tables += stability_lines(points, study)
+    if scene.models or not scene.stability:
+        for load, found in loads.items():
+            table = accuracy_table(found)
+            findings += _under(load, sweep_findings(found, table), several=len(loads) > 1)
+            tables += [accuracy_lines(found, table), influence_lines(found), value_lines(found)]
     if ladders is not None:
         findings = [*convergence_findings(ladders), *findings]
         tables = [*convergence_lines(ladders), *tables]
@@ -81,9 +93,17 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         figures=embedded_figures(folder / "figures"),
         tables=[table for table in tables if table is not None],
         links=_links(folder),
-        models=model_names(study),
+        models=list(dict.fromkeys(name for found in loads.values() for name in model_names(found))),
         provenance=_provenance(study),
     )
+
+
+def _under(load: str, findings: list[Finding], *, several: bool) -> list[Finding]:
+    """Say the load with each finding where there are several; only one load makes headlines."""
+    if not several:
+        return findings
+    said = [replace(finding, text=f"Load {load}: {finding.text}") for finding in findings]
+    return said if load == "normal" else [replace(finding, key="") for finding in said]
 
 
 def _links(folder: Path) -> list[Link]:

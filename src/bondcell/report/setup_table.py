@@ -31,16 +31,16 @@ def setup_lines(scene: Scene) -> list[Line]:
     if scene.models:
         lines.append(("models", listed(model_name(name) for name in scene.models)))
     lines += list(_reference(scene))
-    lines.append(("load", scene.load))
+    lines.append(("load" if len(scene.loads) == 1 else "loads", listed(scene.loads)))
     lines += list(_convergence(scene, given.get("convergence") or {}))
     return lines
 
 
 def _reference(scene: Scene) -> Iterator[Line]:
     if scene.reference is not None:
-        conditions = listed(scene.reference.bc)
+        conditions = f"{listed(scene.reference.bc)}; " if "normal" in scene.loads else ""
         tolerance = number(scene.reference.tolerance)
-        yield "finite element reference", f"{conditions}; relative tolerance {tolerance}"
+        yield "finite element reference", f"{conditions}relative tolerance {tolerance}"
 
 
 def _convergence(scene: Scene, given: Mapping[str, Any]) -> Iterator[Line]:
@@ -52,6 +52,11 @@ def _convergence(scene: Scene, given: Mapping[str, Any]) -> Iterator[Line]:
         yield f"case {name.replace('_', ' ')}", words or "the cell above"
     if scene.convergence.orders:
         yield "orders p of the structured mesh", _listed_numbers(scene.convergence.orders)
+    if scene.convergence.gradings:
+        ratios = _listed_numbers(scene.convergence.gradings)
+        yield "ratios of neighbouring elements of the structured mesh, order 4", ratios
+    if scene.convergence.basis_order:
+        yield "order p under the reduced basis", str(scene.convergence.basis_order)
     if scene.convergence.sizes:
         yield "relative element sizes of the triangles", _listed_numbers(scene.convergence.sizes)
     yield "timed repeats", f"{scene.convergence.repeats}, of which the median is given"
