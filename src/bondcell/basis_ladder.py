@@ -97,12 +97,15 @@ def climb_basis(cell: Cell, order: int, bc: str, load: str, repeats: int) -> Ite
             times.append((time.perf_counter() - started) / MATERIALS)
         own, doubt = (values[:, study.index] for values in (study.diagonal(response), bound))
         stiffness = study.scale * own
+        largest = float((doubt / np.abs(own)).max())
         yield BasisRung(
             size=basis.size,
             level=Level(float(stiffness[0]), basis.size, study.elements, 0.0, 0.0, median(times)),
-            bound=float((doubt / np.abs(own)).max()),
+            bound=largest,
             error=float(np.abs(stiffness[:SAMPLE] / exact - 1).max()),
         )
+        if largest <= TOLERANCES[-1]:
+            break  # more vectors would only show round-off
 
 
 class _Materials:

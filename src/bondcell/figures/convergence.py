@@ -99,6 +99,8 @@ def _basis_drawing(table: pd.DataFrame) -> Drawing:
 def _title(here: pd.DataFrame) -> str:
     """Case with its boundary condition, or its load where there is no choice of conditions."""
     row = here.iloc[0]
+    if row["load"] in row["case"]:
+        return case_name(row["case"])
     return f"{case_name(row['case'])} ({row['bc'] if row['load'] == 'normal' else row['load']})"
 
 

@@ -92,6 +92,8 @@ def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
 def _case(rows: pd.DataFrame) -> str:
     """Name of a case with its boundary condition, or its load where conditions mean nothing."""
     row = rows.iloc[0]
+    if row["load"] in row["case"]:
+        return case_name(row["case"])
     return f"{case_name(row['case'])} ({row['bc'] if row['load'] == 'normal' else row['load']})"
 
 
@@ -120,12 +122,12 @@ def _basis(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
     told = grown.iloc[-1] if good.empty else good.iloc[0]
     size = int(told["refinement"])
     bounded = (grown["sample_error"] <= grown["bound"] + ROUND_OFF).all()
-    honest = "never below" if bounded else "not always above"
+    honest = "not below" if bounded else "not always above"
     yield Finding(
         f"Case {case_name(case)}: a reduced basis of {size} vectors serves random materials "
         f"(modulus ratios up to 1e8) to {number(told['sample_error'], 2)}, by its own bound "
-        f"{number(told['bound'], 2)}, in {quantity(told['seconds'], 's', 2)} a point; the bound is "
-        f"{honest} the true error.",
+        f"{number(told['bound'], 2)}, in {quantity(told['seconds'], 's', 2)} a point; at "
+        f"each size the largest bound is {honest} the largest true error.",
         f"{size} vectors",
         f"reduced basis good to {number(told['sample_error'], 1)}, {case_name(case)}",
         topic="reduced basis",
