@@ -103,7 +103,17 @@ def combine_cases(cases: Mapping[str, xr.Dataset]) -> xr.Dataset:
         Case name -> its result, as `bondcell.convergence_run.run_case` gives it.
     """
     names = xr.DataArray(list(cases), dims="case", name="case", attrs={"long_name": "case"})
-    return xr.concat(list(cases.values()), dim=names, join="outer", combine_attrs="drop_conflicts")
+    missing = {"status": Status.not_computed, "dof": 0, "elements": 0}
+    first = next(iter(cases.values()))
+    present = {name: value for name, value in missing.items() if name in first}
+    return xr.concat(
+        list(cases.values()),
+        dim=names,
+        join="outer",
+        combine_attrs="drop_conflicts",
+        fill_value={name: first[name].dtype.type(value) for name, value in present.items()}
+        | {name: np.nan for name in first.data_vars if first[name].dtype.kind == "f"},
+    )
 
 
 def convergence_table(study: xr.Dataset) -> pd.DataFrame:
