@@ -99,6 +99,8 @@ class Model:
         Which points of a cell lie in the valid range.
     is_reference
         Whether it is the finite element reference, which `bondcell.evaluate` runs by geometry.
+    from_reference
+        Whether it interpolates the reference: close to it by construction, no rival of formulas.
     """
 
     name: str
@@ -110,3 +112,4 @@ class Model:
     options: Mapping[str, str] = field(default_factory=dict)
     is_valid: Callable[[Cell], NDArray[np.bool_]] = everywhere
     is_reference: bool = False
+    from_reference: bool = False

@@ -110,4 +110,5 @@ SURROGATE = Model(
     "E_i >= E_m up to rigid, 0 <= nu_m <= 1/2, 0 <= nu_i <= 0.45; NaN elsewhere.",
     loads=_FUNCTIONS,
     is_valid=is_inside,
+    from_reference=True,
 )

@@ -10,6 +10,7 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.accuracy import signed_error
+from bondcell.models import MODELS
 from bondcell.report.findings import Finding
 from bondcell.result_view import axis_unit, axis_values, reference_names
 from bondcell.wording import at, model_name, model_phrase, number, percent
@@ -78,8 +79,11 @@ def _place(study: xr.Dataset, error: xr.DataArray, find: Callable[..., Any]) -> 
 
 
 def ranking(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Finding]:
-    """Which model is closest, among those with a value everywhere."""
+    """Which formula is closest, among those with a value everywhere."""
     rows = table[table["reference"] == reference_names(study)[0]]
+    interpolants = [name for name, model in MODELS.items() if model.from_reference]
+    yield from _interpolants(rows[rows["model"].isin(interpolants)])
+    rows = rows[~rows["model"].isin(interpolants)]
     for (axis, value), group in rows.groupby(
         ["group_axis", "group_value"], sort=False, dropna=False
     ):
@@ -95,15 +99,25 @@ def ranking(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Finding]:
         )
         if axis == "all":
             text = (
-                f"No model stays nearer to finite elements than {bound} at every point: that is "
+                f"No formula stays nearer to finite elements than {bound} at every point: that is "
                 f"the largest error of {model_phrase(safest['model'])}, the smallest of its kind; "
                 f"{closest}."
             )
-            yield Finding(text, bound, "largest error of the best model", topic="ranking")
+            yield Finding(text, bound, "largest error of the best formula", topic="ranking")
         else:
             worst = f"the smallest largest error ({bound}) is that of"
             name = model_phrase(safest["model"])
             yield Finding(f"With {at(axis, value)} {closest}; {worst} {name}.")
+
+
+def _interpolants(rows: pd.DataFrame) -> Iterator[Finding]:
+    """How well models made from the reference give it back."""
+    for _, row in rows[(rows["group_axis"] == "all") & (rows["points"] > 0)].iterrows():
+        name = model_phrase(row["model"])
+        yield Finding(
+            f"{name[0].upper()}{name[1:]} interpolates finite elements and gives them back to "
+            f"{percent(row['abs_error_max'])} at {row['points']} points."
+        )
 
 
 def lower_bound(table: pd.DataFrame) -> Iterator[Finding]:
