@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Never
 
+from bondcell.errors import BondcellError
 from bondcell.models.model import Model
 
 
 def _solved_by_geometry(*_args: object, **_options: object) -> Never:
-    raise NotImplementedError("the reference is solved by geometry: call bondcell.evaluate")
+    raise BondcellError("the reference is solved by geometry: call bondcell.evaluate")
 
 
 FE = Model(
