@@ -1,0 +1,1 @@
+"""Lattices of bonded spheres: packings, bonds as springs between rigid bodies, their solution."""
