@@ -106,6 +106,7 @@ def test_rigid_motions_are_in_the_space_and_strain_no_element(load):
     fields = coefficients.reshape(-1, numbering.components, numbering.count)
     local = fields[:, :, numbering.scalar_dofs].transpose(0, 2, 1, 3)
     local = local.reshape(*local.shape[:2], -1)
+    local = local[:, :, np.concatenate((numbering.inner, numbering.outer))]
     matrices = element_matrices(basis, supports.mode, projected=True)
     forces = np.einsum("eab,meb->mea", matrices.shear, local)
     dilations = np.einsum("epb,meb->mep", matrices.bulk_root, local)

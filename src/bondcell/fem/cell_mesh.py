@@ -19,6 +19,10 @@ from bondcell.fem.orientation import orient
 from bondcell.fem.patch import Patch, patch_points
 
 
+TIP = 1.3
+"""First arc segment from the tip, over the radius where the film is twice as thick as its gap."""
+
+
 @dataclass(frozen=True)
 class Geometry:
     """Dimensions of one cell [m]."""
@@ -42,6 +46,8 @@ class Grading:
     ----------
     growth
         Ratio of neighbouring element sizes.
+    largest
+        Largest angle of an element along the arc [rad].
     foot
         Where the cusp between sphere and lateral surface is cut, in radii (or where grading toward
         the foot stops when the cylinder is wider than the sphere).
@@ -53,9 +59,10 @@ class Grading:
         Ratio of neighbouring sizes toward such corners.
     """
 
-    growth: float = 3.0
+    growth: float = 4.0
+    largest: float = 0.4
     foot: float = 2e-3
-    foot_growth: float = 3.0
+    foot_growth: float = 6.0
     corner: float = 0.0
     corner_growth: float = 6.0
 
@@ -172,19 +179,20 @@ def _half_cell(
     annulus = geometry.cylinder_radius - radius
     # Narrow annuli need grading like the film; below the cut they are resolved no further.
     foot = max(grading.foot, float(np.sqrt(2 * annulus / radius)))
-    foot_breaks = graded_breaks(foot / FOOT_ANGLE, grading.foot_growth)
+    foot_breaks = graded_breaks(foot, FOOT_ANGLE, grading.foot_growth, grading.largest)
+    tip_breaks = graded_breaks(TIP * film, MIDDLE_ANGLE, grading.growth, grading.largest)
     corner_breaks: list[float] = []
     if grading.corner:
-        scale = grading.corner / (foot_breaks[0] * FOOT_ANGLE)
-        corner_breaks = graded_breaks(scale, grading.corner_growth)[:-1]
+        scale = grading.corner / foot_breaks[0]
+        corner_breaks = graded_breaks(scale, 1.0, grading.corner_growth)[:-1]
     return HalfCell(
         side=name,
         radius=radius,
         reach=geometry.gap / 2,
         side_radius=side_radius,
         cylinder_radius=geometry.cylinder_radius,
-        tip_breaks=graded_breaks(film / MIDDLE_ANGLE, grading.growth),
-        foot_breaks=foot_breaks,
+        tip_breaks=[angle / MIDDLE_ANGLE for angle in tip_breaks],
+        foot_breaks=[angle / FOOT_ANGLE for angle in foot_breaks],
         corner_breaks=corner_breaks,
         cut=annulus == 0,
         growth=grading.growth,

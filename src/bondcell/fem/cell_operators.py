@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import CellMesh
-from bondcell.fem.element_matrices import ElementMatrices, cell_basis, element_matrices
+from bondcell.fem.element_matrices import cell_basis, element_matrices
 from bondcell.fem.half_cell import MATRIX, PARTICLE_I, PARTICLE_J
 from bondcell.fem.lifts import lifts, rigid_motions
 from bondcell.fem.materials import Constants
@@ -65,7 +65,7 @@ class CellOperators:
 
         def part(region: int, interface: NDArray[np.int64], lift: FloatArray) -> Substructure:
             rows = mesh.region == region
-            own = ElementMatrices(matrices.shear[rows], matrices.bulk_root[rows])
+            own = matrices.of(rows)
             dofs = numbering.outer_dofs[rows]
             both = np.tile(rigid, 2)
             return Substructure(
@@ -78,7 +78,7 @@ class CellOperators:
             part(region, interface, np.zeros_like(starts))
             for region, interface in zip(particles, interfaces, strict=True)
         ]
-        self._layout(interfaces, pressures=min(1, matrices.bulk_root.shape[1]))
+        self._layout(interfaces, pressures=min(1, matrices.pressures))
         self._systems: dict[float, Condensed] = {}
         self._particle_systems: dict[tuple[int, float], FloatArray] = {}
 

@@ -16,43 +16,68 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
-from bondcell.fem.cell_basis import CellBasis, cell_basis, gauss_square
+from bondcell.fem.cell_basis import CellBasis, cell_basis, gauss_line, gauss_square
 from bondcell.fem.strain import D_R, D_Z, DEVIATOR, OVER_R, TRACE, FourierMode
-from bondcell.fem.tensor_sums import sum_products, sum_shapes
+from bondcell.fem.tensor_sums import (
+    dilatations,
+    pressure_line,
+    pressure_pairs,
+    sum_products,
+    sum_shapes,
+)
 
 __all__ = ["ElementMatrices", "cell_basis", "element_matrices", "gauss_square"]
 
 
 @dataclass(frozen=True)
 class ElementMatrices:
-    """Element matrices in the local order (component, shape function).
+    """Element matrices, cut into the unknowns inside an element and on its boundary.
+
+    Either kind is in the order (component, shape function).
 
     Parameters
     ----------
-    shear
-        Of ``2 mu |dev eps|^2`` at ``mu = 1``, shape (elements, n, n).
-    bulk_root
-        ``R`` above, shape (elements, pressures, n); the first row is the element's mean
-        dilatation, and there is none where the mode has no dilatation.
+    inner, link, outer
+        Of ``2 mu |dev eps|^2`` at ``mu = 1``: inside with inside, boundary with inside, boundary
+        with boundary; shapes (elements, i, i), (elements, o, i), (elements, o, o).
+    root_inner, root_outer
+        ``R`` above, shapes (elements, pressures, i) and (elements, pressures, o); the first row is
+        the element's mean dilatation, and there is none where the mode has no dilatation.
     """
 
-    shear: FloatArray
-    bulk_root: FloatArray
+    inner: FloatArray
+    link: FloatArray
+    outer: FloatArray
+    root_inner: FloatArray
+    root_outer: FloatArray
 
+    def of(self, elements: NDArray[np.bool_]) -> ElementMatrices:
+        """Those of some elements."""
+        return ElementMatrices(
+            *(
+                block[elements]
+                for block in (self.inner, self.link, self.outer, self.root_inner, self.root_outer)
+            )
+        )
 
-@lru_cache(maxsize=32)
-def _pressure_table(order: int, count: int) -> FloatArray:
-    """Polynomials of total degree below ``order`` at the Gauss points, constant first."""
-    points, _ = gauss_square(count)
-    legendre = [
-        np.polynomial.legendre.legvander(2 * coordinate - 1, order - 1) for coordinate in points
-    ]
-    pairs = sorted(
-        ((a, b) for a in range(order) for b in range(order - a)), key=lambda pair: sum(pair)
-    )
-    return np.stack([legendre[0][:, a] * legendre[1][:, b] for a, b in pairs], axis=-1)
+    @property
+    def shear(self) -> FloatArray:
+        """The shear matrices in one piece, unknowns inside first, shape (elements, n, n)."""
+        upper = np.concatenate((self.inner, self.link.transpose(0, 2, 1)), axis=2)
+        return np.concatenate((upper, np.concatenate((self.link, self.outer), axis=2)), axis=1)
+
+    @property
+    def bulk_root(self) -> FloatArray:
+        """``R`` in one piece, unknowns inside first, shape (elements, pressures, n)."""
+        return np.concatenate((self.root_inner, self.root_outer), axis=2)
+
+    @property
+    def pressures(self) -> int:
+        """Pressures of an element."""
+        return int(self.root_inner.shape[1])
 
 
 def element_matrices(basis: CellBasis, mode: FourierMode, projected: bool) -> ElementMatrices:
@@ -69,11 +94,10 @@ def element_matrices(basis: CellBasis, mode: FourierMode, projected: bool) -> El
         as it is (displacement form: an upper bound of the stiffness, but it locks near nu = 1/2).
     """
     radius = basis.place[0]
-    weight = np.sqrt(mode.angle_integral * basis.dx * radius)
-    pulled = _pulled_back(basis, radius) * weight
+    measure = mode.angle_integral * basis.dx * radius
+    pulled = _pulled_back(basis, radius)
     return ElementMatrices(
-        shear=_shear(pulled, mode, basis),
-        bulk_root=_bulk_root(pulled, mode, weight, basis, projected),
+        *_shear(pulled, measure, mode, basis), *_bulk_root(pulled, measure, mode, basis, projected)
     )
 
 
@@ -87,46 +111,91 @@ def _pulled_back(basis: CellBasis, radius: FloatArray) -> FloatArray:
     return result
 
 
-def _shear(pulled: FloatArray, mode: FourierMode, basis: CellBasis) -> FloatArray:
+def _shear(
+    pulled: FloatArray, measure: FloatArray, mode: FourierMode, basis: CellBasis
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     components, elements = len(mode.components), pulled.shape[2]
-    q, shapes = basis.points_along, basis.Nbfun
+    order, q = basis.elem.p, basis.points_along
+    edge = 4 * order
+    inside = (order + 1) ** 2 - edge
     coefficients = 2 * np.einsum("cxs,st,dyt->cdxy", mode.strain, DEVIATOR, mode.strain)
     # Products of two entries of `pulled` at the points: by (x, y), then by the pair of kinds.
-    products = (pulled[:, None, :, None] * pulled[None, :, None, :]).reshape(9, -1)
-    shear = np.empty((elements, components, shapes, components, shapes))
+    products = (pulled[:, None, :, None] * (pulled * measure)[None, :, None, :]).reshape(9, -1)
+    inner = np.empty((elements, components, inside, components, inside))
+    link = np.empty((elements, components, edge, components, inside))
+    outer = np.empty((elements, components, edge, components, edge))
     for c in range(components):
         for d in range(c, components):
             fields = (coefficients[c, d].reshape(9) @ products).reshape(3, 3, elements, q, q)
-            block = sum_products(fields, basis.elem.p)
-            shear[:, c, :, d] = block
+            block = sum_products(fields, order)
+            inner[:, c, :, d] = block[:, edge:, edge:]
+            link[:, c, :, d] = block[:, :edge, edge:]
+            outer[:, c, :, d] = block[:, :edge, :edge]
             if c != d:
-                shear[:, d, :, c] = block.transpose(0, 2, 1)
-    return shear.reshape(elements, components * shapes, components * shapes)
+                inner[:, d, :, c] = block[:, edge:, edge:].transpose(0, 2, 1)
+                link[:, d, :, c] = block[:, edge:, :edge].transpose(0, 2, 1)
+                outer[:, d, :, c] = block[:, :edge, :edge].transpose(0, 2, 1)
+    i, o = components * inside, components * edge
+    return inner.reshape(-1, i, i), link.reshape(-1, o, i), outer.reshape(-1, o, o)
 
 
 def _bulk_root(
-    pulled: FloatArray, mode: FourierMode, weight: FloatArray, basis: CellBasis, projected: bool
-) -> FloatArray:
-    components, elements = len(mode.components), len(weight)
+    pulled: FloatArray, measure: FloatArray, mode: FourierMode, basis: CellBasis, projected: bool
+) -> tuple[FloatArray, FloatArray]:
+    components, elements = len(mode.components), len(measure)
     trace = np.einsum("cxs,s->cx", mode.strain, TRACE)
+    edge = 4 * basis.elem.p
+    inside = basis.Nbfun - edge
     if not trace.any():
-        return np.zeros((elements, 0, components * basis.Nbfun))
-    dilatation = np.tensordot(trace, pulled, 1)
-    if projected:
-        pressures = _pressure_table(basis.elem.p, basis.points_along) * weight[:, :, None]
-        orthonormal, _ = np.linalg.qr(pressures)
-        rows = np.ascontiguousarray(orthonormal.transpose(0, 2, 1))
-    else:
-        # Any orthonormal basis of the quadrature points will do, constant first.
-        rows = _householder(weight / np.linalg.norm(weight, axis=1, keepdims=True))
-    q = basis.points_along
-    root = np.empty((elements, rows.shape[1], components, basis.Nbfun))
-    for c in range(components):
-        fields = dilatation[c][:, :, None] * rows
-        root[:, :, c] = sum_shapes(fields.reshape(3, -1, q, q), basis.tables).reshape(
-            elements, -1, basis.Nbfun
+        return np.zeros((elements, 0, components * inside)), np.zeros(
+            (elements, 0, components * edge)
         )
-    return root.reshape(elements, -1, components * basis.Nbfun)
+    dilatation = np.tensordot(trace, pulled, 1)
+    make = _projected_roots if projected else _plain_roots
+    inner, outer = [], []
+    for root in make(dilatation, measure, basis):
+        outer.append(root[:, :, :edge])
+        inner.append(root[:, :, edge:])
+    return np.concatenate(inner, axis=2), np.concatenate(outer, axis=2)
+
+
+def _projected_roots(
+    dilatation: FloatArray, measure: FloatArray, basis: CellBasis
+) -> list[FloatArray]:
+    """``R`` of each component, with pressures made orthonormal by their Gram matrix's factor."""
+    order, q = basis.elem.p, basis.points_along
+    table = _pressure_table(order, q)
+    gram = table.T @ (measure[:, :, None] * table)
+    orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
+    return [
+        orthonormal @ dilatations((component * measure).reshape(3, -1, q, q), order)
+        for component in dilatation
+    ]
+
+
+def _plain_roots(
+    dilatation: FloatArray, measure: FloatArray, basis: CellBasis
+) -> list[FloatArray]:
+    """``R`` of each component, with a pressure for every quadrature point, constant first."""
+    q = basis.points_along
+    weight = np.sqrt(measure)
+    rows = _householder(weight / np.linalg.norm(weight, axis=1, keepdims=True))
+    roots = []
+    for component in dilatation:
+        fields = (component * weight)[:, :, None] * rows
+        root = sum_shapes(fields.reshape(3, -1, q, q), basis.tables)
+        roots.append(root.reshape(len(weight), -1, basis.Nbfun))
+    return roots
+
+
+@lru_cache(maxsize=32)
+def _pressure_table(order: int, count: int) -> FloatArray:
+    """Pressures at the Gauss points, constant first, shape (points, pressures)."""
+    legendre = pressure_line(order, gauss_line(count)[0])
+    along, across = pressure_pairs(order)
+    return np.ascontiguousarray(
+        (legendre[along][:, :, None] * legendre[across][:, None, :]).reshape(along.size, -1).T
+    )
 
 
 def _householder(unit: FloatArray) -> FloatArray:

@@ -26,7 +26,7 @@ Key = tuple[object, ...]
 
 MATRIX, PARTICLE_I, PARTICLE_J = 0, 1, 2
 
-MIDDLE_ANGLE = 0.9
+MIDDLE_ANGLE = 0.68
 """Where the arc is split between tip block and foot block, measured from the tip [rad]."""
 
 FOOT_ANGLE = np.pi / 2 - MIDDLE_ANGLE

@@ -19,11 +19,10 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solve_triangular
 
 from bondcell.cell import FloatArray
 from bondcell.fem.element_matrices import ElementMatrices
-from bondcell.fem.symmetric_solve import solve_symmetric
+from bondcell.fem.symmetric_solve import eliminated, half_solve
 
 
 def bulk_to_shear(poisson: float) -> float:
@@ -83,44 +82,46 @@ class Substructure:
 
     @property
     def _kept_pressures(self) -> int:
-        return min(1, self.matrices.bulk_root.shape[1])
+        return min(1, self.matrices.pressures)
 
     def _condense_elements(self, compliance: float) -> FloatArray:
         """Element matrices on (boundary unknowns, mean pressure), shape (elements, m, m)."""
-        retained, link, gone = (block.copy() for block in self._without_inner)
+        retained, link, gone = self._without_inner
+        system = retained.copy()
         means = np.arange(self.outer.size, retained.shape[1])
-        retained[:, means, means] -= compliance
+        system[:, means, means] -= compliance
         others = np.arange(gone.shape[1])
-        gone[:, others, others] += compliance
-        return np.asarray(retained + link.transpose(0, 2, 1) @ np.linalg.solve(gone, link))
+        for block, coupling, own in zip(system, link, gone, strict=True):
+            own = own.copy()
+            own[others, others] += compliance
+            root = half_solve(own, coupling.copy())
+            block += root @ root.T
+        return system
 
     @cached_property
     def _without_inner(self) -> tuple[FloatArray, FloatArray, FloatArray]:
         """What is left of the element systems without the displacements inside, at ``1/c = 0``.
 
         They meet no Poisson's ratio, so they go once. Blocks: (boundary, mean pressure) with
-        itself, the other pressures with it, and the negative of the other pressures with
-        themselves.
+        itself, (boundary, mean pressure) with the other pressures, and the negative of the other
+        pressures with themselves.
         """
-        outer, inner, kept = self.outer, self.inner, self._kept_pressures
-        shear, root = self.matrices.shear, self.matrices.bulk_root
-        own = shear[:, inner[:, None], inner]
-        # Transposed, so that each element's block is in the order that LAPACK wants.
-        link = np.concatenate((shear[:, outer[:, None], inner], root[:, :, inner]), axis=1)
-        factors = np.linalg.cholesky(own)
-        for block, factor in zip(link, factors, strict=True):
-            block[...] = solve_triangular(factor, block.T, lower=True, check_finite=False).T
-        rest = -(link @ link.transpose(0, 2, 1))
-        size = outer.size
-        rest[:, :size, :size] += shear[:, outer[:, None], outer]
-        rest[:, size:, :size] += root[:, :, outer]
-        rest[:, :size, size:] += root[:, :, outer].transpose(0, 2, 1)
+        own = self.matrices
+        size, kept = self.outer.size, self._kept_pressures
+        link = np.concatenate((own.link, own.root_inner), axis=1)
+        rest = np.empty((len(link), link.shape[1], link.shape[1]))
+        for inner, coupling, left in zip(own.inner, link, rest, strict=True):
+            root = half_solve(inner.copy(), coupling)
+            np.matmul(-root, root.T, out=left)
+        rest[:, :size, :size] += own.outer
+        rest[:, size:, :size] += own.root_outer
+        rest[:, :size, size:] += own.root_outer.transpose(0, 2, 1)
         at = size + kept
-        return rest[:, :at, :at], rest[:, at:, :at], -rest[:, at:, at:]
+        return rest[:, :at, :at], rest[:, :at, at:], -rest[:, at:, at:]
 
     def _condense_part(self, element: FloatArray) -> Condensed:
         """Assemble the skeleton and eliminate all but the interface and the first pressure."""
-        numbers, kept, size = self._numbering()
+        numbers, kept, size, negative = self._numbering()
         moves = self.motions.shape[1]
         total = np.zeros((size, size))
         pull = np.zeros((size, moves))
@@ -137,7 +138,7 @@ class Substructure:
                 own += value.T @ force
         gone, stay = slice(kept, size), slice(0, kept)
         right = np.concatenate((total[gone, stay], pull[gone]), axis=1)
-        reduction = right.T @ solve_symmetric(total[gone, gone], right)
+        reduction = eliminated(total[gone, gone], right, negative)
         return Condensed(
             matrix=total[stay, stay] - reduction[:kept, :kept],
             coupling=pull[stay] - reduction[:kept, kept:],
@@ -154,12 +155,13 @@ class Substructure:
         rigid = (motions == self.rigid[self.dofs]).all(axis=1)
         return np.where(rigid[:, None], 0.0, motions)
 
-    def _numbering(self) -> tuple[NDArray[np.int64], int, int]:
-        """Position of each element's skeleton unknowns (-1: prescribed), how many stay, how many.
+    def _numbering(self) -> tuple[NDArray[np.int64], int, int, int]:
+        """Position of each element's skeleton unknowns (-1: prescribed), and counts.
 
-        Interface first, then the kept pressure, then what will be eliminated.
+        Interface first, then the kept pressure, then what will be eliminated, pressures last. The
+        counts are of unknowns that stay, of all, and of pressures that go.
         """
-        pressures = self._kept_pressures
+        pressures, others = self._kept_pressures, 0
         kept = self.interface.size + pressures
         position = np.full(self.held.size, -1)
         position[self.interface] = np.arange(self.interface.size)
@@ -169,8 +171,7 @@ class Substructure:
         size = kept + rest.size
         numbers = position[self.dofs]
         if pressures:
-            count = len(self.dofs) - 1
-            means = np.concatenate(([self.interface.size], size + np.arange(count)))
+            others = len(self.dofs) - 1
+            means = np.concatenate(([self.interface.size], size + np.arange(others)))
             numbers = np.concatenate((numbers, means[:, None]), axis=1)
-            size += count
-        return numbers, kept, size
+        return numbers, kept, size + others, others

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
-from bondcell.fem.cell_basis import LineTables, line_tables
+from bondcell.fem.cell_basis import LineTables, gauss_line, line_tables
 
 X_SLOPE = (0, 1, 0)
 """Whether a kind differentiates along x."""
@@ -78,6 +78,61 @@ def sum_products(coefficients: FloatArray, order: int) -> FloatArray:
         collected = np.stack([coefficients[k, m] for k, m in kinds_of(pair)], axis=1)
         half.append(table @ collected.reshape(batch, -1, count))
     both = np.concatenate(half, axis=2).reshape(-1, along_y.shape[0]) @ along_y
+    return both.reshape(batch, -1).take(place, axis=1, mode="clip")
+
+
+def pressure_line(order: int, at: FloatArray) -> FloatArray:
+    """Legendre polynomials of degree below ``order`` on [0, 1], shape (order, points)."""
+    return np.asarray(np.polynomial.legendre.legvander(2 * at - 1, order - 1).T)
+
+
+def pressure_pairs(order: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Degrees along x and y of the polynomials of total degree below ``order``, constant first."""
+    pairs = sorted(((a, b) for a in range(order) for b in range(order - a)), key=sum)
+    along, across = np.array(pairs).T
+    return along, across
+
+
+@lru_cache(maxsize=32)
+def _pressure_tables(
+    order: int, count: int
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.int64]]:
+    """Products of a pressure and a function: along x (for either slope along y) and along y.
+
+    The last array says where the entries (pressure, shape function) are found.
+    """
+    tables = line_tables(order, count)
+    legendre = pressure_line(order, gauss_line(count)[0])
+    value = (legendre[:, None] * tables.value).reshape(-1, count)
+    slope = (legendre[:, None] * tables.slope).reshape(-1, count)
+    along, across = pressure_pairs(order)
+    row = along[:, None] * (order + 1) + tables.first
+    column = across[:, None] * (order + 1) + tables.second
+    along_x = np.concatenate([value, slope], axis=1)
+    along_y = np.ascontiguousarray(np.concatenate([value, slope], axis=1).T)
+    return along_x, value, along_y, row * len(value) + column
+
+
+def dilatations(coefficients: FloatArray, order: int) -> FloatArray:
+    """Weighted sums of products of a pressure and a shape function.
+
+    Parameters
+    ----------
+    coefficients
+        Of each kind of the shape function at the points, shape (3, batch, q, q).
+    order
+        Polynomial order of the shape functions; pressures have total degrees below it.
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (batch, pressures, shapes).
+    """
+    batch, count = coefficients.shape[1:3]
+    along_x, value_x, along_y, place = _pressure_tables(order, count)
+    no_slope = along_x @ coefficients[:2].transpose(1, 0, 2, 3).reshape(batch, -1, count)
+    half = np.concatenate([no_slope, value_x @ coefficients[2]], axis=2)
+    both = half.reshape(-1, along_y.shape[0]) @ along_y
     return both.reshape(batch, -1).take(place, axis=1, mode="clip")
 
 
