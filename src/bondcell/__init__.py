@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     )
     from bondcell.evaluate import evaluate
     from bondcell.models import MODELS
+    from bondcell.prony.prony import Prony, PronyError
     from bondcell.status import Status
 
     __version__: str
@@ -40,6 +41,8 @@ __all__ = [
     "DataError",
     "InputError",
     "MissingLibrary",
+    "Prony",
+    "PronyError",
     "SceneError",
     "Status",
     "UnknownModel",
@@ -55,6 +58,8 @@ _HOME = {
     "DataError": "bondcell.errors",
     "InputError": "bondcell.errors",
     "MissingLibrary": "bondcell.errors",
+    "Prony": "bondcell.prony.prony",
+    "PronyError": "bondcell.prony.prony",
     "SceneError": "bondcell.errors",
     "Status": "bondcell.status",
     "UnknownModel": "bondcell.errors",

@@ -23,7 +23,7 @@ HEAVY = {
     "xarray",
 }
 
-GROUND = {"cell", "errors", "status", "models", "fem", "lattice", "solid"}
+GROUND = {"cell", "errors", "status", "models", "fem", "lattice", "prony", "solid"}
 TOP = {"__main__", "cli", "figures", "report"}
 
 
