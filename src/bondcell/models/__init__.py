@@ -10,6 +10,8 @@ generatrix: generatrix lines
 slices: plane slices
 parallel_bond: parallel bond
 cementation: cementation theory
+film: film between elastic spheres
+bounds: bounds from below and above
 surrogate: interpolated finite elements
 fe: finite elements
 """
@@ -19,7 +21,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from types import MappingProxyType
 
+from bondcell.models.bounds import BOUNDS
 from bondcell.models.cementation import CEMENTATION
+from bondcell.models.film import FILM
 from bondcell.models.finite_elements import FE
 from bondcell.models.fsi import FSI
 from bondcell.models.general import GENERAL
@@ -32,7 +36,18 @@ from bondcell.models.surrogate import SURROGATE
 MODELS: Mapping[str, Model] = MappingProxyType(
     {
         model.name: model
-        for model in (FSI, GENERAL, GENERATRIX, SLICES, PARALLEL_BOND, CEMENTATION, SURROGATE, FE)
+        for model in (
+            FSI,
+            GENERAL,
+            GENERATRIX,
+            SLICES,
+            PARALLEL_BOND,
+            CEMENTATION,
+            FILM,
+            BOUNDS,
+            SURROGATE,
+            FE,
+        )
     }
 )
 """Every model by the name that ``bondcell.evaluate`` takes."""

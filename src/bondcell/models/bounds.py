@@ -1,0 +1,63 @@
+"""Certified bounds of the normal stiffness, from a stress field below and displacements above."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bondcell.cell import Cell
+from bondcell.models import film, generatrix
+from bondcell.models.model import Model, Springs
+
+
+def normal(cell: Cell) -> Springs:
+    """Interval that holds the normal stiffness of the cell between frictionless plates.
+
+    Parameters
+    ----------
+    cell
+        Bond cells of any shape.
+
+    Returns
+    -------
+    Springs
+        The middle of the interval as stiffness, its half width over the middle as relative error,
+        and the parts ``lower`` and ``upper`` [N/m].
+
+    Notes
+    -----
+    Lower: the stress of the generatrix lines balances itself and leaves the sides free, so its
+    complementary energy bounds the compliance from above. Upper: the trial displacements of the
+    film model are continuous and keep the plates plane, so their energy bounds the stiffness from
+    above at any Poisson's ratio, 1/2 included. Both are widened by their numerical error.
+
+    Examples
+    --------
+    >>> cell = Cell.from_values(
+    ...     radius_i=7.5e-3,
+    ...     gap=5e-4,
+    ...     young_i=3e10,
+    ...     young_m=1.4e6,
+    ...     poisson_i=0.25,
+    ...     poisson_m=0.0,
+    ... )
+    >>> {name: float(part.round(-1)) for name, part in normal(cell).parts.items()}
+    {'lower': 84030.0, 'upper': 87250.0}
+    """
+    below, above = generatrix.normal(cell), film.normal(cell)
+    lower = below.stiffness * (1 - below.relative_error)
+    upper = above.stiffness * (1 + above.relative_error)
+    middle = (lower + upper) / 2
+    half = (upper - lower) / (2 * middle)
+    return Springs.of_cell(cell, middle, np.abs(half), lower=lower, upper=upper)
+
+
+BOUNDS = Model(
+    name="bounds",
+    title="bounds from below and above",
+    summary="The middle of a certified interval: generatrix lines below, film model above.",
+    source="Derived for this project: least complementary and least potential energy.",
+    valid_range="The interval holds wherever the film model is resolved; as an estimate its "
+    "middle is off by up to half the interval, which is reported as the error.",
+    loads={"normal": normal},
+    is_valid=film.is_resolved,
+)
