@@ -208,7 +208,7 @@ def normal(cell: Cell) -> Springs:
     ...     poisson_m=0.46,
     ... )
     >>> float(normal(cell).stiffness.round(-2))  # finite elements: 162461
-    162600.0
+    162700.0
     """
     flat = cell.ravel()
     scale = np.maximum(flat.radius_i, flat.radius_j)
