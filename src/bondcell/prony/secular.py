@@ -75,7 +75,7 @@ def solve(poles: FloatArray, residues: Pair, constant: Pair) -> Roots:
     shape = (equations, roots)
     result = Roots(np.zeros(shape, dtype=np.int64), *(np.zeros(shape) for _ in range(3)))
     step = max(1, LARGEST_BLOCK // max(1, roots * n))
-    for start in range(0, equations, step):
+    for start in range(0, equations if roots else 0, step):
         rows = slice(start, start + step)
         own = poles.ndim == 2
         block = _Block(

@@ -1,0 +1,147 @@
+"""The Prony series of a bond by any analytic model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from bondcell.cell import Cell, FloatArray
+from bondcell.errors import UnsupportedLoad, Violation
+from bondcell.models.model import Model
+from bondcell.prony.bank import Bank
+from bondcell.prony.chain import Chain
+from bondcell.prony.conventions import Relaxing
+from bondcell.prony.model_banks import BANKS
+from bondcell.prony.sampled_bank import sampled_bank
+
+SERIES_ERROR = 1e-12
+"""Bound of the relative error of an exact series, tests/verification/test_prony_springs.py."""
+
+SAMPLED_FACTOR = 3.0
+"""Error of K(t) over that of a fit in the modulus, tests/verification/test_relaxation.py."""
+
+
+def bond_series(
+    model: Model, load: str, matrix: Relaxing, **options: Any
+) -> tuple[Chain, FloatArray]:
+    """Series of every bond.
+
+    Parameters
+    ----------
+    model, load
+        An analytic model and one of its loads.
+    matrix
+        The cells and how their matrix relaxes.
+    **options
+        Options of the model.
+
+    Returns
+    -------
+    Chain
+        Shape (points,) [N/m, or N m/rad]; NaN where the model has no value.
+    ndarray
+        Relative numerical error of K(t), that of the model's own evaluation not counted.
+    """
+    if load == "normal" and model.name in BANKS:
+        return _exact(model.name, matrix, options)
+    if matrix.convention == "separate":
+        allowed = "a model with an exact series, or a convention without a bulk series"
+        raise UnsupportedLoad([Violation(f"model under {load}", model.name, allowed)])
+    return _fitted(model.loads[load], matrix, options)
+
+
+def _exact(name: str, matrix: Relaxing, options: dict[str, Any]) -> tuple[Chain, FloatArray]:
+    cell, form = matrix.cell, BANKS[name]
+    own = dict(options)
+    if name == "slices":
+        own["relaxed"] = _lowest(matrix)
+    bank = form.bank(cell, **own)
+    if form.modulus == "oedometric":
+        series = _oedometric(bank, matrix)
+    elif matrix.convention == "constant_poisson":
+        squeezed = bank.squeezed(cell.young_m)
+        series = squeezed.relaxation(matrix.prony.shear, cell.young_m, np.zeros(cell.shape))
+    elif matrix.convention == "constant_bulk":
+        modulus = 3 * matrix.shear
+        before = matrix.bulk_compliance / 9
+        series = bank.squeezed(cell.young_m).relaxation(matrix.prony.shear, modulus, before)
+    else:
+        series = _by_matrix(bank.squeezed(cell.young_m), matrix, matrix.young_chain)
+    return series, np.full(cell.shape, SERIES_ERROR)
+
+
+def _oedometric(bank: Bank, matrix: Relaxing) -> Chain:
+    cell = matrix.cell
+    compliance = matrix.bulk_compliance
+    soft = compliance > 0
+    with np.errstate(divide="ignore"):
+        modulus = 1 / compliance + 4 / 3 * matrix.shear
+    if matrix.convention == "constant_poisson":
+        modulus = np.where(soft, modulus, cell.young_m)
+        squeezed = bank.squeezed(modulus)
+        series = squeezed.relaxation(matrix.prony.shear, modulus, np.zeros(cell.shape))
+    else:
+        own = np.flatnonzero(soft)
+        squeezed = bank.squeezed(np.where(soft, modulus, cell.young_m))
+        series = _by_matrix(squeezed, matrix, matrix.oedometric_chain, own)
+    series.equilibrium[~soft] = np.nan
+    series.strengths[~soft] = np.nan
+    return series
+
+
+def _by_matrix(
+    bank: Bank,
+    matrix: Relaxing,
+    chain_of: Callable[[float, float], Chain],
+    points: Any = None,
+) -> Chain:
+    """Points whose chain has shear and bulk modulus in its own ratio, ratio by ratio."""
+    count = len(bank.constant)
+    points = np.arange(count) if points is None else points
+    states = np.stack([matrix.shear, matrix.bulk_compliance], axis=1)[points]
+    found = []
+    distinct, member = np.unique(states, axis=0, return_inverse=True)
+    for k, (shear, compliance) in enumerate(distinct):
+        rows = points[member.ravel() == k]
+        chain = chain_of(float(shear), float(compliance))
+        whole = float(chain.instantaneous)
+        scale, nothing = np.full(rows.size, whole), np.zeros(rows.size)
+        unit = chain.times_factor(1 / whole)
+        found.append((rows, bank.take(rows).relaxation(unit, scale, nothing)))
+    width = max((series.count for _, series in found), default=0)
+    result = Chain(np.zeros(count), np.zeros((count, width)), np.ones((count, width)))
+    for rows, series in found:
+        result.equilibrium[rows] = series.equilibrium
+        result.strengths[rows, : series.count] = series.strengths
+        result.times[rows, : series.count] = series.times
+    return result
+
+
+def _lowest(matrix: Relaxing) -> float:
+    """Least share of E_m at t = 0 that any point relaxes to."""
+    share = float(matrix.prony.shear.equilibrium)
+    if matrix.prony.bulk is not None:
+        share = min(share, float(matrix.prony.bulk.equilibrium))
+    return share
+
+
+def _fitted(
+    formula: Callable[..., Any], matrix: Relaxing, options: dict[str, Any]
+) -> tuple[Chain, FloatArray]:
+    def values(shares: FloatArray) -> FloatArray:
+        return np.array([_value(formula, matrix.at(float(x)), options) for x in shares])
+
+    modulus = matrix.shear
+    bank, error = sampled_bank(values, modulus, float(matrix.prony.shear.equilibrium))
+    series = bank.relaxation(matrix.prony.shear, modulus, np.zeros(modulus.shape))
+    missing = np.isnan(error)
+    series.equilibrium[missing] = np.nan
+    series.strengths[missing] = np.nan
+    return series, SAMPLED_FACTOR * error
+
+
+def _value(formula: Callable[..., Any], cell: Cell, options: dict[str, Any]) -> FloatArray:
+    with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
+        return np.asarray(formula(cell, **options).stiffness)
