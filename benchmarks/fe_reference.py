@@ -183,7 +183,7 @@ def has_ngsolve() -> bool:
 
 def base_point(repeats: int) -> list[Row]:
     """One base point."""
-    solvers = {"bondcell p=9": structured_point(9, SMOOTH)}
+    solvers = {"bondcell p=8": structured_point(8, SMOOTH)}
     if has_ngsolve():
         cell = Cell.from_values(**BASE)
         for name, size in NGSOLVE_SIZES.items():
@@ -196,7 +196,7 @@ def base_point(repeats: int) -> list[Row]:
 def fifty_points(repeats: int) -> list[Row]:
     """Five ratios by ten Poisson's ratios."""
     cells = sweep_cells(np.geomspace(1e2, 1e6, 5), np.linspace(0, 0.46, 10))
-    solvers = {"bondcell": structured_sweep(cells, 2e-7)}
+    solvers = {"bondcell": structured_sweep(cells, 1e-6)}
     if has_ngsolve():
         solvers["NGSolve p=6"] = ngsolve_points(cells, 6, NGSOLVE_SIZES["NGSolve p=6"])
     return take_turns("50 points", solvers, exact(cells), repeats)

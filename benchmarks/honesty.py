@@ -53,9 +53,9 @@ def compare(cell: Cell, load: str, bc: str, tolerance: float) -> tuple[int, floa
     seconds = time.perf_counter() - started
     usual = find_load(load, bc).grading
     finer = replace(
-        usual, growth=2.0, foot=usual.foot / 4, foot_growth=2.2, corner=usual.corner / 30
+        usual, growth=3.0, largest=0.3, foot=usual.foot / 4, foot_growth=4, corner=usual.corner / 30
     )
-    order = min(int(answer.order[0]) + 2, 14)
+    order = min(int(answer.order[0]) + 2, 12)
     true = solve_level(cell, order, bc, load, grading=finer).stiffness
     error = abs(answer.stiffness[0] / true - 1)
     return int(answer.status[0]), float(answer.error_estimate[0]), float(error), seconds

@@ -14,10 +14,10 @@ from bondcell.status import Status, cf_flag_attributes
 OUTPUTS = ("stiffness", "error_estimate", "status", "dof", "seconds")
 """Variables that every evaluation gives."""
 
-DETAILS = {"order": 0, "way": 2, "reduction_error": 0.0, "coupling": np.nan}
+DETAILS = {"order": 0, "way": 3, "reduction_error": 0.0, "coupling": np.nan}
 """Variables that only the finite element reference gives -> what stands for them elsewhere."""
 
-WAYS = ("direct", "reduced_basis", "closed_form")
+WAYS = ("direct", "reduced_basis", "spectrum", "closed_form")
 """Meanings of the flag variable ``way``: how a value was found."""
 
 STIFFNESS_UNITS = {

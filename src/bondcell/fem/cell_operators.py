@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
@@ -13,9 +14,10 @@ from bondcell.fem.half_cell import MATRIX, PARTICLE_I, PARTICLE_J
 from bondcell.fem.lifts import lifts, rigid_motions
 from bondcell.fem.materials import Constants
 from bondcell.fem.numbering import Numbering
+from bondcell.fem.pencil import Pencil
 from bondcell.fem.substructure import Condensed, Substructure
 from bondcell.fem.supports import Supports
-from bondcell.fem.symmetric_solve import solve_symmetric
+from bondcell.fem.symmetric_solve import eliminated
 
 
 class CellOperators:
@@ -81,6 +83,7 @@ class CellOperators:
         self._layout(interfaces, pressures=min(1, matrices.pressures))
         self._systems: dict[float, Condensed] = {}
         self._particle_systems: dict[tuple[int, float], FloatArray] = {}
+        self._joined: dict[tuple[tuple[float, ...], float], FloatArray] = {}
 
     def _layout(self, interfaces: list[NDArray[np.int64]], pressures: int) -> None:
         """Where each part's unknowns stand: interfaces first, then one pressure a part."""
@@ -142,42 +145,51 @@ class CellOperators:
                 pull = particle[:, : len(self._followed)] @ self._followed
                 right[at] += pull
                 constant += self._followed.T @ pull[: len(self._followed)]
-        answer = solve_symmetric(system[np.ix_(free, free)], right[free])
-        response = constants.shear_m * (constant - right[free].T @ answer)
+        moving, others = (
+            np.flatnonzero(free & self.is_displacement),
+            np.flatnonzero(free & ~self.is_displacement),
+        )
+        lost = eliminated(
+            system[np.ix_(moving, moving)],
+            np.concatenate((right[moving].T, system[np.ix_(others, moving)])),
+            np.concatenate((right[others].T, system[np.ix_(others, others)])),
+        )
+        response = constants.shear_m * (constant - lost)
         return np.asarray(response / 2 if self.is_half else response)
 
-    def response_by_ratio(self, poisson_m: float, poisson: float, ratios: FloatArray) -> FloatArray:
-        """Responses at many moduli of equal particles from one eigenvalue problem.
+    def pencil(self, poisson_m: float, poisson: Sequence[float], share: float) -> Pencil:
+        """The system at one set of Poisson's ratios, ready for particles of any modulus.
 
-        Once the pressures are eliminated, ``X = S + rho P`` is diagonal in the eigenvectors of
-        ``S v = lambda P v``, ``v^T P v = 1``, and ``K = c - sum (v^T b)^2 / (lambda + rho)``.
-
-        Returns
-        -------
-        numpy.ndarray
-            Shape (ratios, motions, motions), unit shear modulus of the matrix.
+        Parameters
+        ----------
+        poisson_m, poisson
+            Poisson's ratios of the matrix and of each particle.
+        share
+            Shear modulus of particle j over that of particle i.
         """
         system = self.matrix_system(poisson_m)
-        moving = self.is_displacement
+        moving = int(self.is_displacement.sum())
         m = self.motions
-        particle = np.zeros((self.size, self.size))
-        for k, at in enumerate(self.of_particle):
-            particle[np.ix_(at, at)] = self.particle_system(k, poisson)
-        pressures = self.of_matrix[~moving[self.of_matrix]]
         matrix, coupling, own = _eliminate(
-            system.matrix, system.coupling[:, :m], system.own[:m, :m], pressures
+            system.matrix, system.coupling[:, :m], system.own[:m, :m], self.of_matrix[moving:]
         )
-        others = np.setdiff1d(np.flatnonzero(~moving), pressures)
-        nothing = np.zeros((self.size, m))
-        particle, _, _ = _eliminate(particle, nothing, np.zeros((m, m)), others)
-        inside = np.ix_(moving, moving)
-        eigenvalues, vectors = scipy.linalg.eigh(
-            matrix[inside], particle[inside], check_finite=False
-        )
-        forces = vectors.T @ coupling[moving]
-        shares = 1 / (eigenvalues + ratios[:, None])
-        response = own - np.einsum("km,rk,kn->rmn", forces, shares, forces, optimize=True)
-        return np.asarray(response / 2 if self.is_half else response)
+        particles = self._joined_particles(tuple(poisson), share)
+        return Pencil(matrix[:moving, :moving], particles, coupling[:moving], own, self.is_half)
+
+    def _joined_particles(self, poisson: tuple[float, ...], share: float) -> FloatArray:
+        """The particles on all displacements of the interfaces, pressures eliminated."""
+        key = (poisson, share)
+        if key not in self._joined:
+            joined = np.zeros((self.size, self.size))
+            for k, at in enumerate(self.of_particle):
+                own = self.particle_system(k, poisson[k])
+                joined[np.ix_(at, at)] = own if k == 0 else share * own
+            moving = self.is_displacement
+            others = np.setdiff1d(np.flatnonzero(~moving), self.of_matrix)
+            nothing = np.zeros((self.size, 0))
+            joined, _, _ = _eliminate(joined, nothing, np.zeros((0, 0)), others)
+            self._joined[key] = joined[np.ix_(moving, moving)]
+        return self._joined[key]
 
 
 def _eliminate(

@@ -173,9 +173,7 @@ def _projected_roots(
     ]
 
 
-def _plain_roots(
-    dilatation: FloatArray, measure: FloatArray, basis: CellBasis
-) -> list[FloatArray]:
+def _plain_roots(dilatation: FloatArray, measure: FloatArray, basis: CellBasis) -> list[FloatArray]:
     """``R`` of each component, with a pressure for every quadrature point, constant first."""
     q = basis.points_along
     weight = np.sqrt(measure)

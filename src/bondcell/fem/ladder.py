@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,17 +13,22 @@ from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
 from bondcell.fem.structured import CellSolver, Load
 
+IndexArray = NDArray[np.int64]
+
 ORDERS = (4, 6, 8, 10, 12, 14)
 """Polynomial orders of the rungs."""
 
 LARGEST = 16_000
 """Elements times order squared, a bound on unknowns and time: the ladder ends there."""
 
+FEW = 8
+"""Points up to which each climbs from the first rung."""
+
 REDUCTION = 20
 """A reduced basis may add the tolerance over this."""
 
-ROUND_OFF = (1e-11, 1e-7)
-"""Least and largest relative round-off of one solve; it grows with ``kappa/mu``."""
+ROUND_OFF, THIN_ROUND_OFF = 1e-11, 2e-9
+"""Relative round-off of one solve, and its bound where ``kappa/mu`` is large and gap/R is one."""
 
 
 class Ladder:
@@ -64,39 +70,60 @@ class Ladder:
         self.reduction_error, self.seconds = np.zeros(count), np.zeros(count)
         self.order, self.dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
         self.way = np.zeros(count, dtype=np.int8)
-        self._round_off = _round_off(materials)
-        rungs = np.full((count, len(ORDERS)), np.nan)
-        started = time.perf_counter()
-        mesh = build_cell_mesh(geometry, grading, half)
-        still_open = np.arange(count)
-        for number, order in enumerate(ORDERS):
-            if not still_open.size or mesh.topology.nelements * order**2 > LARGEST:
-                break
-            solver = CellSolver(geometry, load, half, order, mesh)
-            sweep = solver.sweep(materials.take(still_open), tolerance / REDUCTION)
-            rungs[still_open, number] = self.stiffness[still_open] = sweep.stiffness
-            self.reduction_error[still_open] = sweep.reduction_error / np.abs(sweep.stiffness)
-            self.way[still_open], self.order[still_open] = sweep.way, order
-            self.dof[still_open], self.coupling[still_open] = solver.dof, sweep.coupling
-            self._estimate(still_open, rungs[still_open, : number + 1])
-            now = time.perf_counter()
-            self.seconds[still_open] += (now - started) / still_open.size
-            started = now
-            solved = np.isfinite(self.stiffness[still_open])
-            still_open = still_open[solved & (self.error_estimate[still_open] > tolerance)]
+        self._round_off = _round_off(geometry, materials)
+        self._materials, self._tolerance = materials, tolerance
+        self._rungs = np.full((count, len(ORDERS)), np.nan)
+        self._solver = partial(CellSolver, geometry, load, half)
+        self._clock = time.perf_counter()
+        self._mesh = build_cell_mesh(geometry, grading, half)
+        everyone = np.arange(count)
+        if count <= FEW:
+            self._climb(everyone, 0, {})
+            return
+        # What few points need tells where the others may start: one rung below.
+        pioneers = _pioneers(materials)
+        solvers: dict[int, CellSolver] = {}
+        self._climb(pioneers, 0, solvers)
+        reached = np.isfinite(self._rungs[pioneers]).sum(axis=1)
+        self._climb(np.setdiff1d(everyone, pioneers), max(0, int(reached.min()) - 2), solvers)
 
-    def _estimate(self, points: NDArray[np.int64], rungs: FloatArray) -> None:
-        discretisation = np.maximum(estimate(rungs), self._round_off[points])
-        self.error_estimate[points] = discretisation + self.reduction_error[points]
+    def _climb(self, points: IndexArray, start: int, solvers: dict[int, CellSolver]) -> None:
+        """Climb from a rung until the tolerance is met; ``solvers`` of orders are used and kept."""
+        for number, order in enumerate(ORDERS[start:], start):
+            if not points.size or self._mesh.topology.nelements * order**2 > LARGEST:
+                break
+            solver = solvers.get(order) or self._solver(order, self._mesh)
+            solvers[order] = solver
+            sweep = solver.sweep(self._materials.take(points), self._tolerance / REDUCTION)
+            self._rungs[points, number] = self.stiffness[points] = sweep.stiffness
+            self.reduction_error[points] = sweep.reduction_error / np.abs(sweep.stiffness)
+            self.way[points], self.order[points] = sweep.way, order
+            self.dof[points], self.coupling[points] = solver.dof, sweep.coupling
+            discretisation = estimate(self._rungs[points, start : number + 1])
+            discretisation = np.maximum(discretisation, self._round_off[points])
+            self.error_estimate[points] = discretisation + self.reduction_error[points]
+            now = time.perf_counter()
+            self.seconds[points] += (now - self._clock) / points.size
+            self._clock = now
+            solved = np.isfinite(self.stiffness[points])
+            points = points[solved & (self.error_estimate[points] > self._tolerance)]
+
+
+def _pioneers(materials: Materials) -> IndexArray:
+    """Points with the most and the least compressible matrix, with stiff and soft particles."""
+    ratio = materials.ratios.min(axis=1)
+    by_poisson = np.lexsort((ratio, materials.poisson_m))
+    by_ratio = np.lexsort((materials.poisson_m, ratio))
+    return np.unique([by_poisson[0], by_poisson[-1], by_ratio[0], by_ratio[-1]])
 
 
 def estimate(rungs: FloatArray) -> FloatArray:
     """Relative error of the last rung of each ladder; infinite while there are fewer than two.
 
-    Ladders converge exponentially, each rung about thirty times closer to the limit than the one
-    before, so half the last step bounds the error with room to spare. A step that is small by
-    chance, where the sequence turns, is caught by the step before it, allowed to have shrunk
-    fiftyfold at most.
+    Ladders converge exponentially, each rung sixteen to a thousand times closer to the limit than
+    the one before, so a quarter of the last step bounds the error with room to spare. A step that
+    is small by chance, where the sequence turns, is caught by the step before it; where there is
+    none, by the largest step of all points, which share a geometry and err alike.
 
     Parameters
     ----------
@@ -107,14 +134,15 @@ def estimate(rungs: FloatArray) -> FloatArray:
     if steps.shape[1] == 0:
         return np.full(len(rungs), np.inf)
     if steps.shape[1] == 1:
-        return np.asarray(steps[:, 0])
-    return np.maximum(steps[:, -1] / 2, steps[:, -2] / 50)
+        return np.maximum(steps[:, 0] / 4, np.nanmax(steps, initial=0.0) / 25)
+    return np.maximum(steps[:, -1] / 4, steps[:, -2] / 250)
 
 
-def _round_off(materials: Materials) -> FloatArray:
+def _round_off(geometry: Geometry, materials: Materials) -> FloatArray:
     """Nearly incompressible films are badly conditioned, the more the thinner."""
     poisson = np.max([materials.poisson_i, materials.poisson_j, materials.poisson_m], axis=0)
-    least, largest = ROUND_OFF
+    thinness = max(geometry.radius_i, geometry.radius_j) / geometry.gap
+    largest = max(THIN_ROUND_OFF * np.sqrt(thinness), ROUND_OFF)
     with np.errstate(divide="ignore"):
         bulk_to_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson))
-    return np.clip(2 * least * bulk_to_shear, least, largest)
+    return np.clip(2 * ROUND_OFF * bulk_to_shear, ROUND_OFF, largest)

@@ -18,8 +18,11 @@ from bondcell.status import Status
 SOFT_RATIO = 0.3
 """Modulus ratio below which the cusp beside a particle is followed farther."""
 
-STIFF_RATIO, STIFF_CUT = 300.0, 0.04
-"""Modulus ratio from which the cusp may be cut early, and where [radii]: costs below 1e-8."""
+STIFF_RATIO, STIFF_CUT = 100.0, 0.04
+"""A modulus ratio, and where the cusp beside particles about as stiff may be cut early [radii]."""
+
+CUT_SHARE = 0.2
+"""Largest part of the tolerance that an early cut may cost."""
 
 FOLLOWED_CUT = 1e-4
 """Loads whose usual cut is below this hold the side: there the cusp counts at any ratio."""
@@ -86,7 +89,7 @@ def solve(
     blocked = _is_blocked(materials) & ((load, bc) == ("normal", "confined"))
     answer.status[blocked] = Status.diverges
     half = materials.is_mirrored & geometry.is_mirrored
-    gradings = _gradings(geometry, materials, entry)
+    gradings = _gradings(geometry, materials, entry, tolerance)
     for is_half in np.unique(half):
         for grading in sorted(set(gradings), key=lambda g: g.foot):
             mine = np.array([own == grading for own in gradings])
@@ -95,6 +98,9 @@ def solve(
                 own = materials.take(at)
                 ladder = Ladder(geometry, entry, bool(is_half), grading, own, tolerance)
                 ladder.error_estimate += _unresolved_cusp(geometry, own)
+                is_early = grading.foot == STIFF_CUT
+                cut = _early_cut(geometry, own, entry) if is_early else entry.usual_cut
+                ladder.error_estimate += cut
                 _report(ladder, at, tolerance, answer)
     return answer
 
@@ -146,7 +152,15 @@ def _softness(geometry: Geometry, materials: Materials) -> FloatArray:
     return np.where(_touches_side(geometry), materials.ratios, np.inf).min(axis=1)
 
 
-def _gradings(geometry: Geometry, materials: Materials, load: Load) -> list[Grading]:
+def _early_cut(geometry: Geometry, materials: Materials, load: Load) -> FloatArray:
+    """Relative error of cutting the cusp at `STIFF_CUT`: it falls with the ratio squared."""
+    with np.errstate(divide="ignore"):
+        return load.early_cut * (STIFF_RATIO / _softness(geometry, materials)) ** 2
+
+
+def _gradings(
+    geometry: Geometry, materials: Materials, load: Load, tolerance: float
+) -> list[Grading]:
     """How finely each point's mesh follows the cusps at the feet of spheres that touch the side.
 
     What is cut off matters once the cusp is as stiff as the particle next to it, at a height in
@@ -161,10 +175,11 @@ def _gradings(geometry: Geometry, materials: Materials, load: Load) -> list[Grad
     cuts = np.minimum(cuts, usual.foot)
     touches = _touches_side(geometry)
     stiff = replace(usual, foot=STIFF_CUT, corner=0.0 if touches.all() else usual.corner)
-    may_coarsen = touches.any() and usual.foot > FOLLOWED_CUT
+    may_coarsen = touches.any() & (usual.foot > FOLLOWED_CUT)
+    is_early = may_coarsen & (_early_cut(geometry, materials, load) <= CUT_SHARE * tolerance)
     return [
-        stiff if may_coarsen and ratio >= STIFF_RATIO else replace(usual, foot=cut)
-        for ratio, cut in zip(softness.tolist(), cuts.tolist(), strict=True)
+        stiff if early else replace(usual, foot=cut)
+        for early, cut in zip(is_early.tolist(), cuts.tolist(), strict=True)
     ]
 
 

@@ -46,6 +46,30 @@ class Condensed:
 
 
 @dataclass(frozen=True)
+class _Scatter:
+    """How element matrices are summed to a skeleton matrix.
+
+    Parameters
+    ----------
+    numbers
+        Position of each element's unknowns, ``size`` where prescribed, shape (elements, m).
+    entries
+        Position of each element's matrix entries in the flat skeleton matrix.
+    moved
+        Prescribed motions of each element's unknowns, shape (elements, m, motions).
+    kept, size, negative
+        Numbers of unknowns that stay, of all, and of pressures among those that go, which are last.
+    """
+
+    numbers: NDArray[np.int64]
+    entries: NDArray[np.int64]
+    moved: FloatArray
+    kept: int
+    size: int
+    negative: int
+
+
+@dataclass(frozen=True)
 class Substructure:
     """The elements of one material.
 
@@ -121,46 +145,34 @@ class Substructure:
 
     def _condense_part(self, element: FloatArray) -> Condensed:
         """Assemble the skeleton and eliminate all but the interface and the first pressure."""
-        numbers, kept, size, negative = self._numbering()
-        moves = self.motions.shape[1]
-        total = np.zeros((size, size))
-        pull = np.zeros((size, moves))
-        own = np.zeros((moves, moves))
-        moved = np.zeros((*numbers.shape, moves))
-        moved[:, : self.dofs.shape[1]] = self._strained()
-        for matrix, number, value in zip(element, numbers, moved, strict=True):
-            free = number >= 0
-            at = number[free]
-            total[at[:, None], at] += matrix[free][:, free]
-            if value.any():
-                force = matrix @ value
-                pull[at] += force[free]
-                own += value.T @ force
-        gone, stay = slice(kept, size), slice(0, kept)
-        right = np.concatenate((total[gone, stay], pull[gone]), axis=1)
-        reduction = eliminated(total[gone, gone], right, negative)
+        where = self._scatter
+        kept, size, negative = where.kept, where.size, where.negative
+        force: FloatArray = element @ where.moved
+        own = np.tensordot(where.moved, force, ((0, 1), (0, 1)))
+        # Prescribed motions are columns after all unknowns, and so is what nobody reads.
+        flat = np.bincount(where.entries, element.ravel(), minlength=(size + 1) ** 2)
+        total = np.asarray(flat).reshape(size + 1, size + 1)
+        pull = np.zeros((size + 1, force.shape[2]))
+        np.add.at(pull, where.numbers, force)
+        stay, first, last = (
+            slice(0, kept),
+            slice(kept, size - negative),
+            slice(size - negative, size),
+        )
+        reduction = eliminated(
+            np.ascontiguousarray(total[first, first]),
+            np.concatenate((total[stay, first], pull[first].T, total[last, first])),
+            np.concatenate((total[stay, last], pull[last].T, total[last, last])),
+        )
         return Condensed(
             matrix=total[stay, stay] - reduction[:kept, :kept],
             coupling=pull[stay] - reduction[:kept, kept:],
             own=own - reduction[kept:, kept:],
         )
 
-    def _strained(self) -> FloatArray:
-        """Motions of each element's skeleton, zero where an element moves as a rigid body.
-
-        What a rigid motion contributes is round-off, and would be all there is where the particles
-        are much softer than the matrix.
-        """
-        motions = self.motions[self.dofs]
-        rigid = (motions == self.rigid[self.dofs]).all(axis=1)
-        return np.where(rigid[:, None], 0.0, motions)
-
-    def _numbering(self) -> tuple[NDArray[np.int64], int, int, int]:
-        """Position of each element's skeleton unknowns (-1: prescribed), and counts.
-
-        Interface first, then the kept pressure, then what will be eliminated, pressures last. The
-        counts are of unknowns that stay, of all, and of pressures that go.
-        """
+    @cached_property
+    def _scatter(self) -> _Scatter:
+        """Where element matrices go: interface first, the kept pressure, what is eliminated."""
         pressures, others = self._kept_pressures, 0
         kept = self.interface.size + pressures
         position = np.full(self.held.size, -1)
@@ -174,4 +186,19 @@ class Substructure:
             others = len(self.dofs) - 1
             means = np.concatenate(([self.interface.size], size + np.arange(others)))
             numbers = np.concatenate((numbers, means[:, None]), axis=1)
-        return numbers, kept, size + others, others
+        size += others
+        numbers = np.where(numbers < 0, size, numbers)
+        moved = np.zeros((*numbers.shape, self.motions.shape[1]))
+        moved[:, : self.dofs.shape[1]] = self._strained()
+        entries = (numbers[:, :, None] * (size + 1) + numbers[:, None, :]).ravel()
+        return _Scatter(numbers, entries, moved, kept, size, others)
+
+    def _strained(self) -> FloatArray:
+        """Motions of each element's skeleton, zero where an element moves as a rigid body.
+
+        What a rigid motion contributes is round-off, and would be all there is where the particles
+        are much softer than the matrix.
+        """
+        motions = self.motions[self.dofs]
+        rigid = (motions == self.rigid[self.dofs]).all(axis=1)
+        return np.where(rigid[:, None], 0.0, motions)

@@ -78,36 +78,44 @@ def half_solve(matrix: FloatArray, rows: FloatArray) -> FloatArray:
     return np.asarray(dtrsm(1.0, factor, rows.T, trans_a=1, overwrite_b=1).T)
 
 
-def eliminated(matrix: FloatArray, right: FloatArray, negative: int) -> FloatArray:
-    """``right^T matrix^-1 right`` of a symmetric matrix.
+def eliminated(matrix: FloatArray, rows: FloatArray, last: FloatArray) -> FloatArray:
+    """What eliminating the unknowns of a symmetric ``A`` takes away: ``R^T A^-1 R``.
+
+    Displacements come first and pressures last::
+
+        A = [ matrix  C^T ]     R = [ rows[:-n]^T ]     C = rows[-n:],  last = [ ..., D ]
+            [ C       D   ]         [ last[:-n]^T ]
 
     Parameters
     ----------
     matrix
-        Shape (n, n): positive definite but for the last unknowns, whose Schur complement is
-        negative definite.
-    right
-        Shape (n, k).
-    negative
-        How many unknowns are the last.
+        Of the displacements, positive definite, shape (m, m).
+    rows
+        Right-hand sides on the displacements, then the pressures' rows, shape (k + n, m).
+    last
+        The same on the pressures, whose Schur complement is negative definite, shape (k + n, n).
+
+    Returns
+    -------
+    numpy.ndarray
+        Shape (k, k).
 
     Raises
     ------
     numpy.linalg.LinAlgError
         If the matrix is singular.
     """
-    if len(matrix) > DENSE_LIMIT:
-        return np.asarray(right.T @ solve_symmetric(matrix, right))
-    at = len(matrix) - negative
-    try:
-        rows = np.concatenate((matrix[at:, :at], right[:at].T))
-        root = half_solve(matrix[:at, :at].copy(), rows)
-        first, others = root[:negative], root[negative:]
-        last = half_solve(
-            first @ first.T - matrix[at:, at:],
-            np.ascontiguousarray(right[at:].T) - others @ first.T,
-        )
-        return np.asarray(others @ others.T - last @ last.T)
-    except np.linalg.LinAlgError:
-        # Round-off spoils definiteness before it spoils a pivoted factorisation.
-        return np.asarray(right.T @ solve_symmetric(matrix, right))
+    pressures = last.shape[1]
+    k = len(rows) - pressures
+    if len(matrix) <= DENSE_LIMIT:
+        try:
+            root = half_solve(matrix.copy(), rows.copy())
+            rest = root @ root.T
+            schur = half_solve(rest[k:, k:] - last[k:], last[:k] - rest[:k, k:])
+            return np.asarray(rest[:k, :k] - schur @ schur.T)
+        except np.linalg.LinAlgError:
+            # Round-off spoils definiteness before it spoils a pivoted factorisation.
+            pass
+    whole = np.block([[matrix, rows[k:].T], [rows[k:], last[k:]]])
+    right = np.concatenate((rows[:k].T, last[:k].T))
+    return np.asarray(right.T @ solve_symmetric(whole, right))
