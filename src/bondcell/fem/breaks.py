@@ -6,9 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 
-def graded_breaks(
-    scale: float, total: float, ratio: float, largest: float = np.inf
-) -> list[float]:
+def graded_breaks(scale: float, total: float, ratio: float, largest: float = np.inf) -> list[float]:
     """Break points in (0, total]: the first at ``scale``, then growing, then evenly spaced.
 
     Steps are equal in ``t(x) = ln x / ln ratio + x / largest``: neighbouring points stand in the

@@ -18,7 +18,6 @@ from bondcell.fem.half_particle import add_particle
 from bondcell.fem.orientation import orient
 from bondcell.fem.patch import Patch, patch_points
 
-
 TIP = 1.3
 """First arc segment from the tip, over the radius where the film is twice as thick as its gap."""
 
