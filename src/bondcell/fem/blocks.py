@@ -101,3 +101,13 @@ def hold(matrix: bsr_array, held: NDArray[np.bool_]) -> bsr_array:
         kept = np.where(diagonal > 0, diagonal, 1.0)
         data[own, c, c] = np.where(held[rows[own], c], kept, data[own, c, c])
     return bsr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
+
+
+def scaled(matrix: bsr_array, scale: FloatArray) -> bsr_array:
+    """``S A S`` with S diagonal, shape (unknowns,)."""
+    width = matrix.blocksize[0]
+    factors = scale.reshape(-1, width)
+    rows = np.repeat(np.arange(len(factors)), np.diff(matrix.indptr))
+    data = matrix.data * factors[rows][:, :, np.newaxis]
+    data *= factors[matrix.indices][:, np.newaxis, :]
+    return bsr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)

@@ -19,8 +19,8 @@ from bondcell.lattice.rigid_modes import rigid_modes
 LARGEST_DIRECT = {2: 200_000, 3: 6_000}
 """Unknowns up to which the matrix is factorised, by the dimension of the lattice."""
 
-RESIDUAL = 1e-9
-"""Relative residual of the iterative solve; the energy's error is its square."""
+TOLERANCE = 1e-8
+"""Error of the iterative solve in the energy norm; the energy's error is its square."""
 
 _STRAIN_MODES = {
     2: ("normal", "shear", "bending"),
@@ -118,7 +118,7 @@ def _free_motion(
         from bondcell.lattice.multigrid import solve_iteratively
 
         modes = rigid_modes(lattice.points, lattice.rotates)
-        return solve_iteratively(matrix, held, modes, right, RESIDUAL)
+        return solve_iteratively(matrix, held, modes, right, TOLERANCE)
     scale = 1 / np.sqrt(matrix.diagonal()[free])
     inner = csc_array(matrix.tocsr()[free][:, free])
     inner = csc_array(inner.multiply(scale).multiply(scale[:, np.newaxis]))

@@ -1,0 +1,1 @@
+"""Particles in a matrix as a three-dimensional solid: curved tetrahedra, multigrid."""

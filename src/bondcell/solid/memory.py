@@ -1,0 +1,50 @@
+"""What a three-dimensional solution will take, said before the long work."""
+
+from __future__ import annotations
+
+import os
+
+from bondcell.errors import InputError, Violation
+
+BYTES_PER_ELEMENT = 9_000
+"""Peak of mesh, matrices, multigrid and vectors; measured, see the benchmark of the specimen."""
+
+
+def predicted_memory(elements: int) -> int:
+    """Peak memory of an elastic solution with so many second-order tetrahedra [bytes]."""
+    return BYTES_PER_ELEMENT * elements
+
+
+def free_memory() -> float:
+    """Memory that the machine could give now [bytes]; without bound where it does not say."""
+    try:
+        return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, OSError, ValueError):
+        return float("inf")
+
+
+def check_memory(elements: int, limit: float | None = None) -> None:
+    """Refuse a mesh that would not fit.
+
+    Raises
+    ------
+    InputError
+        The predicted memory exceeds ``limit`` [bytes], by default `free_memory`.
+
+    Examples
+    --------
+    >>> check_memory(1000, limit=1e9)
+    """
+    needed = predicted_memory(elements)
+    allowed = free_memory() if limit is None else limit
+    if needed > allowed:
+        raise InputError(
+            [
+                Violation(
+                    "elements",
+                    elements,
+                    f"what fits into {allowed / 1e9:.1f} GB; these take about "
+                    f"{needed / 1e9:.1f} GB: choose larger elements",
+                )
+            ]
+        )

@@ -1,0 +1,118 @@
+"""Assembly of the elastic stiffness, fine and coarse, chunk by chunk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import bsr_array
+
+from bondcell.cell import FloatArray
+from bondcell.fem.blocks import BlockAssembler, IndexArray
+from bondcell.solid.elements import (
+    EMBEDDING,
+    element_matrices,
+    physical_gradients,
+    quadrature,
+    shape_gradients,
+)
+from bondcell.solid.tets import MATRIX, Tets
+
+CHUNK = 2000
+"""Elements whose matrices are held at once: small enough for the processor's cache."""
+
+CURVED_ORDER, STRAIGHT_ORDER = 5, 2
+"""Orders of quadrature; order 2 is exact on straight elements."""
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """Isotropic elastic constants.
+
+    Parameters
+    ----------
+    young
+        Young's modulus [Pa].
+    poisson
+        Poisson's ratio, in (-1, 0.5).
+    """
+
+    young: float
+    poisson: float
+
+    @property
+    def lame(self) -> tuple[float, float]:
+        """``lambda`` and ``mu`` [Pa]."""
+        mu = self.young / (2 * (1 + self.poisson))
+        return 2 * mu * self.poisson / (1 - 2 * self.poisson), mu
+
+    @property
+    def bulk(self) -> float:
+        """Bulk modulus [Pa]."""
+        return self.young / (3 * (1 - 2 * self.poisson))
+
+
+@dataclass(frozen=True)
+class Stiffness:
+    """Stiffness of second-order tetrahedra and of the first-order ones in them.
+
+    Parameters
+    ----------
+    fine
+        On all nodes; unknown ``3 n + c`` is component c of node n.
+    coarse
+        Its Galerkin projection on the linear functions of the corners.
+    """
+
+    fine: bsr_array
+    coarse: bsr_array
+
+
+def assemble(mesh: Tets, matrix: Elastic, particle: Elastic | None) -> Stiffness:
+    """Assemble the stiffness.
+
+    Parameters
+    ----------
+    mesh
+        The mesh.
+    matrix, particle
+        Materials; without ``particle`` only the matrix material is assembled.
+    """
+    elements = np.arange(len(mesh.nodes))
+    lam, mu = np.empty((2, elements.size))
+    inside = mesh.material != MATRIX
+    lam[~inside], mu[~inside] = matrix.lame
+    if particle is None:
+        elements = elements[~inside]
+    else:
+        lam[inside], mu[inside] = particle.lame
+    return assemble_elements(mesh, elements, lam[elements], mu[elements])
+
+
+def assemble_elements(
+    mesh: Tets, elements: IndexArray, lam: FloatArray, mu: FloatArray
+) -> Stiffness:
+    """Assemble some elements with their Lame's constants [Pa], shape (elements,)."""
+    nodes = mesh.nodes[elements]
+    fine = BlockAssembler(nodes, len(mesh.points), 3)
+    coarse = BlockAssembler(nodes[:, :4], mesh.corners, 3)
+    curved = mesh.is_curved[elements]
+    for group, order in (
+        (np.flatnonzero(curved), CURVED_ORDER),
+        (np.flatnonzero(~curved), STRAIGHT_ORDER),
+    ):
+        points, weights = quadrature(order)
+        reference = shape_gradients(points)
+        for start in range(0, group.size, CHUNK):
+            own = group[start : start + CHUNK]
+            gradients, volumes = physical_gradients(mesh.points[nodes[own]], reference, weights)
+            local = element_matrices(gradients, volumes, lam[own], mu[own])
+            fine.add(own, local)
+            coarse.add(own, coarsened(local))
+    return Stiffness(fine.matrix(), coarse.matrix())
+
+
+def coarsened(local: FloatArray) -> FloatArray:
+    """Element matrices on the four corners, shape (elements, 12, 12), of those on ten nodes."""
+    wide = np.kron(EMBEDDING, np.eye(3))
+    return np.asarray(wide.T @ local @ wide)
