@@ -29,9 +29,18 @@ class Aggregates:
         Unknowns that stay zero, shape (nodes, width).
     modes
         Rigid motions, shape (nodes, width, motions).
+    many
+        Whether many right-hand sides will come at once: rows of numbers are quicker for these than
+        blocks, and take more memory.
     """
 
-    def __init__(self, matrix: bsr_array, held: NDArray[np.bool_], modes: FloatArray) -> None:
+    def __init__(
+        self,
+        matrix: bsr_array,
+        held: NDArray[np.bool_],
+        modes: FloatArray,
+        many: bool = False,
+    ) -> None:
         from pyamg.aggregation import smoothed_aggregation_solver
 
         inner = hold(matrix, held)
@@ -49,9 +58,10 @@ class Aggregates:
             coarse_solver=None,
         ).levels
         self.sizes = [level.A.shape[0] for level in levels]
-        self._matrices = [csr_array(level.A) for level in levels[:-1]]
-        self._down = [csr_array(level.R) for level in levels[:-1]]
-        self._up = [csr_array(level.P) for level in levels[:-1]]
+        form = csr_array if many else bsr_array
+        self._matrices = [form(level.A) for level in levels[:-1]]
+        self._down = [form(level.R) for level in levels[:-1]]
+        self._up = [form(level.P) for level in levels[:-1]]
         self._smoothers = [
             Chebyshev(bsr_array(level.A), np.ones(level.A.shape[0]), product=own)
             for level, own in zip(levels[:-1], self._matrices, strict=True)

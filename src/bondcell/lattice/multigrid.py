@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import bsr_array, csr_array
+from scipy.sparse import bsr_array
 
 from bondcell.cell import FloatArray
 from bondcell.fem.aggregates import Aggregates
@@ -42,9 +42,8 @@ def solve_iteratively(
     free = (~held).astype(np.float64).reshape(-1, 1)
     inner = hold(matrix, held)
     solver = Aggregates(inner, held, modes)
-    product = csr_array(inner)
     answer, iterations = conjugate_gradients(
-        lambda x: product @ x,
+        lambda x: inner @ x,
         solver,
         right.reshape(-1, 1) * free,
         tolerance,

@@ -48,7 +48,7 @@ class PMultigrid:
         coarse_held = held[: mesh.corners]
         self._coarse_free = self.free[: 3 * mesh.corners, np.newaxis]
         modes = rigid_modes(mesh.points[: mesh.corners], rotates=True)[:, :3]
-        self._aggregates = Aggregates(stiffness.coarse, coarse_held, modes)
+        self._aggregates = Aggregates(stiffness.coarse, coarse_held, modes, many)
 
     def restrict(self, fine: FloatArray) -> FloatArray:
         """Transpose of `extend`."""
