@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from bondcell.evaluate import evaluate
     from bondcell.models import MODELS
     from bondcell.prony.prony import Prony, PronyError
+    from bondcell.relaxation import dynamic_stiffness, relaxation, relaxation_series
     from bondcell.status import Status
 
     __version__: str
@@ -49,7 +50,10 @@ __all__ = [
     "UnsupportedLoad",
     "Violation",
     "__version__",
+    "dynamic_stiffness",
     "evaluate",
+    "relaxation",
+    "relaxation_series",
 ]
 
 _HOME = {
@@ -65,12 +69,15 @@ _HOME = {
     "UnknownModel": "bondcell.errors",
     "UnsupportedLoad": "bondcell.errors",
     "Violation": "bondcell.errors",
+    "dynamic_stiffness": "bondcell.relaxation",
     "evaluate": "bondcell.evaluate",
+    "relaxation": "bondcell.relaxation",
+    "relaxation_series": "bondcell.relaxation",
 }
 
 
 class _Package(ModuleType):
-    """Keeps an import of the submodule ``evaluate`` from hiding the function of that name."""
+    """Keeps an import of a submodule from hiding the function of its name, as ``evaluate``."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not (name in _HOME and isinstance(value, ModuleType)):

@@ -82,7 +82,7 @@ def evaluate(
     >>> dict(out.sizes)
     {'gap': 3}
     """
-    chosen = _checked_model(model, load, options)
+    chosen = checked_model(model, load, options)
     cell, dims = cell_from_study(study)
     if chosen.is_reference:
         results, parts = _evaluate_reference(load, cell, options), Parts()
@@ -125,7 +125,8 @@ def blocks(shape: tuple[int, ...], limit: int) -> Iterator[Block]:
             yield (slice(start, stop), *others)
 
 
-def _checked_model(name: object, load: object, options: Mapping[str, Any]) -> Model:
+def checked_model(name: object, load: object, options: Mapping[str, Any]) -> Model:
+    """The model of a name, if it covers the load and has the options; else an `InputError`."""
     if not isinstance(name, str) or name not in MODELS:
         raise UnknownModel([Violation("model", name, f"one of {', '.join(MODELS)}")])
     model = MODELS[name]

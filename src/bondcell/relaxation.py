@@ -1,0 +1,363 @@
+"""Relaxation of every bond cell in a study: its exact Prony series, K(t) and K*(omega)."""
+
+from __future__ import annotations
+
+import time as clock
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from bondcell.by_geometry import geometry_groups
+from bondcell.cell import Cell, FloatArray
+from bondcell.errors import InputError, Violation
+from bondcell.evaluate import checked_model
+from bondcell.inputs import cell_from_study
+from bondcell.models.asked import ask
+from bondcell.models.model import Model
+from bondcell.outputs import STIFFNESS_UNITS
+from bondcell.prony.bond_series import bond_series
+from bondcell.prony.chain import Chain
+from bondcell.prony.conventions import Relaxing, absolute_moduli
+from bondcell.prony.prony import Prony
+from bondcell.reference_options import DEFAULT_TOLERANCE
+from bondcell.status import Status, cf_flag_attributes
+
+TIME = {"units": "s", "long_name": "time since the step"}
+FREQUENCY = {"units": "rad s-1", "long_name": "angular frequency"}
+
+
+@dataclass(frozen=True)
+class _Answer:
+    """Series of all points and what is known of them, arrays of shape (points,)."""
+
+    series: Chain
+    error: FloatArray
+    status: NDArray[np.int8]
+    dof: NDArray[np.int64]
+    seconds: FloatArray
+
+
+@dataclass(frozen=True)
+class _Question:
+    """A study with its matrix relaxing."""
+
+    study: xr.Dataset
+    model: Model
+    load: str
+    options: dict[str, Any]
+    matrix: Relaxing
+    shape: tuple[int, ...]
+    dims: tuple[str, ...]
+
+    @property
+    def coords(self) -> dict[Any, Any]:
+        """Coordinates of the study that belong to the result."""
+        own = set(self.dims)
+        return {n: c for n, c in self.study.coords.items() if set(c.dims) <= own}
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Attributes of every result."""
+        return {
+            "model": self.model.name,
+            "load": self.load,
+            "convention": self.matrix.convention,
+            "relative_to": self.matrix.prony.relative_to,
+            **self.options,
+        }
+
+
+def relaxation(
+    study: xr.Dataset,
+    prony: Prony,
+    time: ArrayLike,
+    model: str = "fsi",
+    convention: str | None = None,
+    load: str = "normal",
+    **options: Any,
+) -> xr.Dataset:
+    """Stiffness of the bond at every time after a step displacement.
+
+    Parameters
+    ----------
+    study
+        As for `bondcell.evaluate`; the matrix moduli are those that ``prony.relative_to`` says.
+        With absolute weights ``young_m`` may be left out.
+    prony
+        How the matrix relaxes.
+    time
+        Times since the step [s], not negative; inf is the end.
+    model, load, **options
+        As for `bondcell.evaluate`.
+    convention
+        ``"constant_bulk"`` (default), ``"constant_poisson"``, or ``"separate"`` (default and only
+        choice with a bulk series).
+
+    Returns
+    -------
+    xarray.Dataset
+        ``stiffness(time, ...)`` = F(t)/d [N m-1; N m rad-1], ``error_estimate(...)`` (relative, at
+        any time), ``status(time, ...)``: a model may leave its valid range as poisson_m rises;
+        ``dof``, ``seconds``.
+
+    Examples
+    --------
+    >>> study = xr.Dataset(
+    ...     {
+    ...         "radius_i": 7.5e-3,
+    ...         "young_i": 3e10,
+    ...         "poisson_i": 0.25,
+    ...         "young_m": 1.4e6,
+    ...         "poisson_m": 0.46,
+    ...     },
+    ...     coords={"gap": [5e-4, 1e-3]},
+    ... )
+    >>> out = relaxation(study, Prony([0.6, 0.3], [1.0, 100.0]), [0.0, 1.0, np.inf])
+    >>> dict(out.sizes)
+    {'time': 3, 'gap': 2}
+    >>> out.stiffness.isel(gap=0).round(-1).values
+    array([84060., 52570.,  8610.])
+    """
+    question = _ask(study, prony, model, convention, load, options)
+    points = _checked_axis("time", time, allow_end=True)
+    answer = _solve(question)
+    shape = (points.size, *question.shape)
+    stiffness = answer.series.relaxation(points).reshape(shape)
+    status = np.array([_flags(question, answer, state) for state in _states(question, points)])
+    dims = ("time", *question.dims)
+    variables = {
+        "stiffness": (dims, stiffness, _stiffness_attributes(load, "stiffness after a step")),
+        "status": (dims, status.reshape(shape), cf_flag_attributes()),
+        **_point_variables(question, answer),
+    }
+    coords = {**question.coords, "time": ("time", points, TIME)}
+    return xr.Dataset(variables, coords, question.attributes)
+
+
+def relaxation_series(
+    study: xr.Dataset,
+    prony: Prony,
+    model: str = "fsi",
+    convention: str | None = None,
+    load: str = "normal",
+    **options: Any,
+) -> xr.Dataset:
+    """The Prony series of the bond itself, ``K(t) = K_inf + sum K_k exp(-t/tau_k)``.
+
+    Parameters
+    ----------
+    study, prony, model, convention, load, **options
+        As for `relaxation`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``K_inf(...)``, ``K_k(..., term)`` [N m-1; N m rad-1], ``tau_k(..., term)`` [s], times
+        ascending; points with fewer terms are padded with NaN. ``error_estimate(...)`` (relative,
+        of K at any time), ``status(...)``, ``dof``, ``seconds``.
+
+    Examples
+    --------
+    >>> study = xr.Dataset(
+    ...     {
+    ...         "radius_i": 7.5e-3,
+    ...         "gap": 5e-4,
+    ...         "young_i": 3e10,
+    ...         "poisson_i": 0.25,
+    ...         "young_m": 1.4e6,
+    ...         "poisson_m": 0.46,
+    ...     }
+    ... )
+    >>> series = relaxation_series(study, Prony([0.6, 0.3], [1.0, 100.0]))
+    >>> series.tau_k.round(3).values
+    array([  1.016, 100.823])
+    """
+    question = _ask(study, prony, model, convention, load, options)
+    answer = _solve(question)
+    dims, shape = question.dims, question.shape
+    series = answer.series
+    used = (series.strengths > 0).sum(axis=1).max(initial=0)
+    padded = ~(series.strengths[:, :used] > 0)
+    strengths = np.where(padded, np.nan, series.strengths[:, :used])
+    times = np.broadcast_to(series.times, series.strengths.shape)[:, :used]
+    times = np.where(padded, np.nan, times)
+    units = STIFFNESS_UNITS[load]
+    final = {"units": units, "long_name": "stiffness that never relaxes"}
+    part = {"units": units, "long_name": "stiffness of the term at t = 0"}
+    tau = {"units": "s", "long_name": "relaxation time of the term"}
+    variables = {
+        "K_inf": (dims, series.equilibrium.reshape(shape), final),
+        "K_k": ((*dims, "term"), strengths.reshape(*shape, used), part),
+        "tau_k": ((*dims, "term"), times.reshape(*shape, used), tau),
+        "status": (dims, _ever(question, answer).reshape(shape), cf_flag_attributes()),
+        **_point_variables(question, answer),
+    }
+    return xr.Dataset(variables, question.coords, question.attributes)
+
+
+def dynamic_stiffness(
+    study: xr.Dataset,
+    prony: Prony,
+    frequency: ArrayLike,
+    model: str = "fsi",
+    convention: str | None = None,
+    load: str = "normal",
+    **options: Any,
+) -> xr.Dataset:
+    """Complex stiffness K*(omega) of the bond under steady oscillation.
+
+    Parameters
+    ----------
+    frequency
+        Angular frequencies [rad/s], not negative.
+    study, prony, model, convention, load, **options
+        As for `relaxation`.
+
+    Returns
+    -------
+    xarray.Dataset
+        ``storage`` and ``loss`` (real and imaginary part) on (frequency, ...) [N m-1; N m rad-1],
+        ``loss_factor``, and ``error_estimate``, ``status``, ``dof``, ``seconds`` on (...).
+    """
+    question = _ask(study, prony, model, convention, load, options)
+    points = _checked_axis("frequency", frequency, allow_end=False)
+    answer = _solve(question)
+    value = answer.series.dynamic(points).reshape(points.size, *question.shape)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        factor = np.where(value.real > 0, value.imag / value.real, np.inf)
+    factor = np.where(np.isnan(value.real), np.nan, factor)
+    dims = ("frequency", *question.dims)
+    status = _ever(question, answer).reshape(question.shape)
+    variables = {
+        "storage": (dims, value.real, _stiffness_attributes(load, "storage stiffness")),
+        "loss": (dims, value.imag, _stiffness_attributes(load, "loss stiffness")),
+        "loss_factor": (dims, factor, {"units": "1", "long_name": "loss over storage"}),
+        "status": (question.dims, status, cf_flag_attributes()),
+        **_point_variables(question, answer),
+    }
+    coords = {**question.coords, "frequency": ("frequency", points, FREQUENCY)}
+    return xr.Dataset(variables, coords, question.attributes)
+
+
+def _ask(
+    study: xr.Dataset,
+    prony: object,
+    model: str,
+    convention: str | None,
+    load: str,
+    options: dict[str, Any],
+) -> _Question:
+    chosen = checked_model(model, load, options)
+    if not isinstance(prony, Prony):
+        raise InputError([Violation("prony", type(prony).__name__, "a bondcell.Prony")])
+    if isinstance(study, xr.Dataset) and prony.instantaneous_modulus is not None:
+        given = study["poisson_m"].values if "poisson_m" in study.variables else np.nan
+        fixed = absolute_moduli(prony, np.asarray(given, dtype=float))
+        for name, value in fixed.items():
+            if name not in study.variables:
+                dims = study["poisson_m"].dims if value.ndim else ()
+                study = study.assign({name: (dims, value)})
+    cell, dims = cell_from_study(study)
+    matrix = Relaxing.of(cell.ravel(), prony, convention)
+    return _Question(study, chosen, load, dict(options), matrix, cell.shape, dims)
+
+
+def _checked_axis(name: str, given: ArrayLike, allow_end: bool) -> FloatArray:
+    try:
+        values = np.atleast_1d(np.asarray(given, dtype=float))
+    except (TypeError, ValueError):
+        values = np.array([np.nan])
+    good = (values >= 0) & (np.isfinite(values) | allow_end)
+    if values.ndim != 1 or not values.size or not good.all():
+        wrong = float(values[~good].ravel()[0]) if (~good).any() else given
+        allowed = f"a list of numbers in [0, {'inf]' if allow_end else 'inf)'}"
+        raise InputError([Violation(name, wrong, allowed)])
+    return values
+
+
+def _solve(question: _Question) -> _Answer:
+    if question.model.is_reference:
+        return _solve_reference(question)
+    started = clock.perf_counter()
+    matrix, count = question.matrix, question.matrix.cell.radius_i.size
+    series, error = bond_series(question.model, question.load, matrix, **question.options)
+    springs, status = ask(question.model, question.load, matrix.cell, **question.options)
+    known = np.isfinite(series.instantaneous)
+    missing = ~known & (status < Status.limit_exceeded)
+    status = np.where(missing, Status.not_computed, status).astype(np.int8)
+    error = np.where(known, np.maximum(error, 0) + springs.relative_error, np.nan)
+    seconds = np.full(count, (clock.perf_counter() - started) / count)
+    return _Answer(series, error, status, np.zeros(count, dtype=np.int64), seconds)
+
+
+def _states(question: _Question, points: FloatArray) -> list[Cell | None]:
+    """The cells at each time, as far as a valid range may depend on it."""
+    if question.model.is_reference:
+        return [None] * points.size
+    return [*question.matrix.states(points)]
+
+
+def _flags(question: _Question, answer: _Answer, state: Cell | None) -> NDArray[np.int8]:
+    """Flags of all points when the matrix is in a state: as it relaxes a model's range may end."""
+    if state is None:
+        return answer.status
+    outside = ~np.broadcast_to(question.model.is_valid(state), answer.status.shape)
+    own = np.where(outside, Status.outside_valid_range, Status.ok)
+    free = answer.status <= Status.outside_valid_range
+    return np.where(free, own, answer.status).astype(np.int8)
+
+
+def _ever(question: _Question, answer: _Answer) -> NDArray[np.int8]:
+    """Flags that hold for all times: the worse of the first and the last."""
+    states = _states(question, np.array([0.0, np.inf]))
+    return np.max([_flags(question, answer, state) for state in states], axis=0)
+
+
+def _solve_reference(question: _Question) -> _Answer:
+    """Point by point, geometry by geometry, so that neighbours share their operators."""
+    from bondcell.fem.relaxation_pencil import relax
+
+    matrix = question.matrix
+    if matrix.convention == "separate":
+        allowed = "constant_bulk or constant_poisson for model 'fe'"
+        raise InputError([Violation("convention", "separate", allowed)])
+    bc = question.options.get("bc", "roller")
+    tolerance = question.options.get("tolerance", DEFAULT_TOLERANCE)
+    count = matrix.cell.radius_i.size
+    found: dict[int, Any] = {}
+    for group in geometry_groups(matrix.cell):
+        for point in group.tolist():
+            own = Relaxing(matrix.prony, matrix.convention, matrix.cell.take([point]))
+            found[point] = relax(own, question.load, bc, tolerance)
+    answers = [found[point] for point in range(count)]
+    width = max(answer.series.count for answer in answers)
+    strengths, times = np.zeros((count, width)), np.ones((count, width))
+    for point, answer in enumerate(answers):
+        strengths[point, : answer.series.count] = answer.series.strengths
+        times[point, : answer.series.count] = answer.series.times
+    return _Answer(
+        Chain(np.array([float(a.series.equilibrium) for a in answers]), strengths, times),
+        np.array([a.error_estimate for a in answers]),
+        np.array([a.status for a in answers], dtype=np.int8),
+        np.array([a.dof for a in answers], dtype=np.int64),
+        np.array([a.seconds for a in answers]),
+    )
+
+
+def _stiffness_attributes(load: str, name: str) -> dict[str, str]:
+    return {"units": STIFFNESS_UNITS[load], "long_name": f"{load} {name} of the bond"}
+
+
+def _point_variables(question: _Question, answer: _Answer) -> dict[str, Any]:
+    error = {"units": "1", "long_name": "relative numerical error at any time"}
+    dof = {"units": "1", "long_name": "degrees of freedom"}
+    seconds = {"units": "s", "long_name": "wall time per point"}
+    shape, dims = question.shape, question.dims
+    return {
+        "error_estimate": (dims, answer.error.reshape(shape), error),
+        "dof": (dims, answer.dof.reshape(shape), dof),
+        "seconds": (dims, answer.seconds.reshape(shape), seconds),
+    }
