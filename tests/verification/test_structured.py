@@ -218,11 +218,15 @@ def test_estimate_is_honest_on_a_large_random_sample():
 
 
 def test_estimate_needs_two_rungs_and_distrusts_a_lucky_step():
-    assert estimate(np.array([[1.0]])) == [np.inf]
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0]])), [0.025])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0], [1.0, 1.0]])), [0.025, 0.004])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0, 1.0]])), [4e-4])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.01, 1.0]])), [2.5e-3])
+    assert estimate(np.array([[1.0]]), 20) == [np.inf]
+    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0]]), 20), [0.02])
+    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0], [1.0, 1.0]]), 20), [0.02, 0.005])
+    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0, 1.0]]), 20), [5e-4])
+    np.testing.assert_allclose(estimate(np.array([[1.1, 1.01, 1.0]]), 20), [2e-3])
+
+
+def test_estimate_takes_steps_that_do_not_shrink_for_round_off():
+    np.testing.assert_allclose(estimate(np.array([[1.01, 1.02, 1.0]]), 20), [0.02])
 
 
 def test_tolerance_that_cannot_be_met_is_flagged():

@@ -27,8 +27,11 @@ FEW = 8
 REDUCTION = 20
 """A reduced basis may add the tolerance over this."""
 
-ROUND_OFF, THIN_ROUND_OFF = 1e-11, 2e-9
-"""Relative round-off of one solve, and its bound where ``kappa/mu`` is large and gap/R is one."""
+ROUND_OFF = 1e-11
+"""Relative round-off of one solve."""
+
+THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
+"""Bounds of it where ``kappa/mu`` is large: at a gap of one radius, and in the thinnest films."""
 
 
 class Ladder:
@@ -74,7 +77,7 @@ class Ladder:
         self._materials, self._tolerance = materials, tolerance
         self._rungs = np.full((count, len(ORDERS)), np.nan)
         self._solver = partial(CellSolver, geometry, load, half)
-        self._clock = time.perf_counter()
+        self._rate, self._clock = load.rate, time.perf_counter()
         self._mesh = build_cell_mesh(geometry, grading, half)
         everyone = np.arange(count)
         if count <= FEW:
@@ -99,7 +102,7 @@ class Ladder:
             self.reduction_error[points] = sweep.reduction_error / np.abs(sweep.stiffness)
             self.way[points], self.order[points] = sweep.way, order
             self.dof[points], self.coupling[points] = solver.dof, sweep.coupling
-            discretisation = estimate(self._rungs[points, start : number + 1])
+            discretisation = estimate(self._rungs[points, start : number + 1], self._rate)
             discretisation = np.maximum(discretisation, self._round_off[points])
             self.error_estimate[points] = discretisation + self.reduction_error[points]
             now = time.perf_counter()
@@ -117,32 +120,37 @@ def _pioneers(materials: Materials) -> IndexArray:
     return np.unique([by_poisson[0], by_poisson[-1], by_ratio[0], by_ratio[-1]])
 
 
-def estimate(rungs: FloatArray) -> FloatArray:
+def estimate(rungs: FloatArray, rate: float) -> FloatArray:
     """Relative error of the last rung of each ladder; infinite while there are fewer than two.
 
-    Ladders converge exponentially, each rung sixteen to a thousand times closer to the limit than
-    the one before, so a quarter of the last step bounds the error with room to spare. A step that
-    is small by chance, where the sequence turns, is caught by the step before it; where there is
-    none, by the largest step of all points, which share a geometry and err alike.
+    Ladders converge exponentially: each rung comes at least ``rate`` times closer to the limit, but
+    for chance, which a factor of four allows for. A step that is small by chance, where the
+    sequence turns, is caught by the step before it; where there is none, by the largest step of all
+    points, which share a geometry and err alike.
 
     Parameters
     ----------
     rungs
         Stiffness by point and order, shape (points, rungs).
+    rate
+        See above.
     """
     steps = np.abs(np.diff(rungs, axis=1)) / np.abs(rungs[:, -1:])
     if steps.shape[1] == 0:
         return np.full(len(rungs), np.inf)
     if steps.shape[1] == 1:
-        return np.maximum(steps[:, 0] / 4, np.nanmax(steps, initial=0.0) / 25)
-    return np.maximum(steps[:, -1] / 4, steps[:, -2] / 250)
+        return np.maximum(steps[:, 0] * 4, np.nanmax(steps, initial=0.0)) / rate
+    last, before = steps[:, -1], steps[:, -2]
+    converging = np.maximum(last * 4 / rate, before * 2 / rate**2)
+    # Two steps alike are no convergence but round-off.
+    return np.where(last > before / 2, np.maximum(last, before), converging)
 
 
 def _round_off(geometry: Geometry, materials: Materials) -> FloatArray:
     """Nearly incompressible films are badly conditioned, the more the thinner."""
     poisson = np.max([materials.poisson_i, materials.poisson_j, materials.poisson_m], axis=0)
     thinness = max(geometry.radius_i, geometry.radius_j) / geometry.gap
-    largest = max(THIN_ROUND_OFF * np.sqrt(thinness), ROUND_OFF)
+    largest = np.clip(THIN_ROUND_OFF * np.sqrt(thinness), ROUND_OFF, WORST_ROUND_OFF)
     with np.errstate(divide="ignore"):
         bulk_to_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson))
     return np.clip(2 * ROUND_OFF * bulk_to_shear, ROUND_OFF, largest)

@@ -31,6 +31,10 @@ SOFT_CUT, SMALLEST_CUT = 1e-2, 1e-6
 """Where the cusp beside a soft particle is cut, over its modulus ratio, and the least [radii]."""
 
 
+TIGHT = 0.499
+"""Poisson's ratio of the matrix from which a cusp that is not resolved makes the value unknown."""
+
+
 @dataclass(frozen=True)
 class Reference:
     """Answers for the points of one geometry, arrays of shape (points,).
@@ -187,8 +191,10 @@ def _unresolved_cusp(geometry: Geometry, materials: Materials) -> FloatArray:
     """Relative error that the shortest cut leaves beside very soft particles.
 
     Measured: the error grows with the square of the cut over the height where the cusp stops to
-    matter, up to about one hundredth; from there by about 0.15 of the stiffness a decade.
+    matter, up to about one hundredth; from there by about 0.15 of the stiffness a decade. An
+    incompressible matrix is wedged in such a cusp: nothing is known of its error.
     """
     excess = SMALLEST_CUT / (SOFT_CUT * _softness(geometry, materials))
     far = 0.01 + 0.15 * np.log10(np.maximum(excess, 300) / 300)
-    return np.where(excess > 1, np.where(excess < 300, 1e-7 * excess**2, far), 0.0)
+    error = np.where(excess > 1, np.where(excess < 300, 1e-7 * excess**2, far), 0.0)
+    return np.where((excess > 1) & (materials.poisson_m > TIGHT), np.inf, error)

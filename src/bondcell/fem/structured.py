@@ -51,6 +51,8 @@ class Load:
         Which motion of the whole is the load's own.
     grading
         Mesh grading that the load needs.
+    rate
+        How much closer to the limit two more orders come at least.
     early_cut, usual_cut
         Relative errors of cutting the cusp early beside particles of ratio 100, and where
         ``grading`` cuts it; see `reference`.
@@ -61,6 +63,7 @@ class Load:
     join: Callable[[list[FloatArray], float], FloatArray]
     index: int
     grading: Grading
+    rate: float = 20.0
     early_cut: float = 1e-7
     usual_cut: float = 2e-9
 
@@ -84,13 +87,19 @@ def _beam(responses: list[FloatArray], length: float) -> FloatArray:
 _GRADED = Grading(corner=CORNER)
 LOADS = {
     ("normal", "roller"): Load(
-        NORMAL["roller"], (NORMAL["roller"],), _alone, 0, Grading(), 2e-8, 1e-10
+        NORMAL["roller"], (NORMAL["roller"],), _alone, 0, Grading(), 30.0, 2e-8, 1e-10
     ),
     ("normal", "clamped"): Load(NORMAL["clamped"], (NORMAL["clamped"],), _alone, 0, _GRADED),
     ("normal", "confined"): Load(
-        NORMAL["confined"], (NORMAL["confined"],), _alone, 0, Grading(foot=2e-6), usual_cut=1e-8
+        NORMAL["confined"],
+        (NORMAL["confined"],),
+        _alone,
+        0,
+        Grading(foot=2e-6),
+        30.0,
+        usual_cut=1e-8,
     ),
-    ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading(), 2e-8, 1e-10),
+    ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading(), 30.0, 2e-8, 1e-10),
     ("shear", None): Load(BEAM, (SHEAR_HALF,), _alone, 0, _GRADED),
     ("bending", None): Load(BEAM, (SHEAR_HALF, BENDING_HALF), _beam, 1, _GRADED),
 }
