@@ -24,7 +24,7 @@ def random_lattice(dimension, seed=0, **changes):
     }
     own = bonds(pairs, pivot=rng.uniform(0.3, 0.7, len(pairs)), **draw | changes)
     corners = triangles(pairs, len(points))[:6]
-    return lattice(points, own, pockets(corners, 0.3))
+    return lattice(points, own, pockets(corners, 0.3, -0.01))
 
 
 def specimen(own, **more):
@@ -125,9 +125,16 @@ def test_pocket_is_the_change_of_area():
         return (a * d - b * c) / 2
 
     change = (area(corners + step) - area(corners - step)) / (2 * area(corners))
+    assert own.pocket_strains()[0, 0] @ step.ravel() == pytest.approx(change, rel=1e-8)
     motion = step.ravel()
     energy = motion @ own.matrix().toarray() @ motion / 2
     assert energy == pytest.approx(7.0 * change**2 / 2, rel=1e-8)
+    strain = np.array([[3.0, 0.5], [0.5, -1.0]])
+    both = lattice(corners, own.bonds, pockets([[0, 1, 2]], 7.0, -2.0))
+    motion = (corners @ strain).ravel()
+    expected = (7.0 * 2**2 - 2.0 * (4**2 + 1**2)) / 2
+    assert motion @ both.matrix().toarray() @ motion / 2 == pytest.approx(expected)
+    motion = step.ravel()
     flat = lattice(np.pad(corners, ((0, 0), (0, 1))), own.bonds, own.pockets)
     space = np.pad(step, ((0, 0), (0, 1))).ravel()
     assert space @ flat.matrix().toarray() @ space / 2 == pytest.approx(energy, rel=1e-12)

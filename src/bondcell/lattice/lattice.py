@@ -12,7 +12,7 @@ from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.fem.blocks import BlockAssembler, IndexArray
 from bondcell.lattice.bonds import MODES, Bonds, strains
-from bondcell.lattice.pockets import Pockets, area_strains, pockets
+from bondcell.lattice.pockets import Pockets, pockets, triangle_strains
 
 CHUNK = 50_000
 """Bonds whose element matrices are held at once."""
@@ -69,11 +69,16 @@ class Lattice:
         return full if self.rotates else full[:, :1]
 
     def pocket_strains(self) -> FloatArray:
-        """Relative area change by the motions of the corners, shape (pockets, 1, 3 width)."""
-        shifts = area_strains(self.points, self.pockets.corners)
-        full = np.zeros((self.pockets.count, 1, 3, self.width))
-        full[:, 0, :, : self.dimension] = shifts
-        return full.reshape(self.pockets.count, 1, 3 * self.width)
+        """Strains of the pockets by the motions of the corners, shape (pockets, 3, 3 width)."""
+        shifts = triangle_strains(self.points, self.pockets.corners)
+        full = np.zeros((self.pockets.count, 3, 3, self.width))
+        full[..., : self.dimension] = shifts
+        return full.reshape(self.pockets.count, 3, 3 * self.width)
+
+    def pocket_stiffness(self) -> FloatArray:
+        """Stiffness of each of `pocket_strains`, shape (pockets, 3)."""
+        own = self.pockets
+        return np.stack([own.stiffness, own.deviator, own.deviator], axis=1)
 
     def matrix(self) -> bsr_array:
         """Stiffness matrix; unknown ``width n + c`` is component c of node n."""
@@ -90,8 +95,8 @@ class Lattice:
         total = bsr_array(total + own.matrix())
         if self.pockets.count:
             three = BlockAssembler(self.pockets.corners, self.count, self.width)
-            stiff = self.pockets.stiffness[:, np.newaxis]
-            three.add(slice(None), _element_matrices(self.pocket_strains(), stiff))
+            local = _element_matrices(self.pocket_strains(), self.pocket_stiffness())
+            three.add(slice(None), local)
             total = bsr_array(total + three.matrix())
         return total
 

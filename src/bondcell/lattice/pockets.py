@@ -1,4 +1,4 @@
-"""Pockets of matrix between three neighbours: they resist a change of the triangle's area."""
+"""Pockets of matrix between three neighbours: what bonds do not know of each other."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from bondcell.errors import InputError, Violation
 
 @dataclass(frozen=True)
 class Pockets:
-    """Three-body springs with the energy ``1/2 K_tri (dA/A)^2``; build them with `pockets`.
+    """Three-body springs; build them with `pockets`.
 
     Parameters
     ----------
@@ -22,10 +22,21 @@ class Pockets:
         Nodes, shape (pockets, 3).
     stiffness
         K_tri [J], shape (pockets,).
+    deviator
+        K_dev [J], shape (pockets,).
+
+    Notes
+    -----
+    With e the uniform strain of the triangle in its plane, the energy is
+    ``1/2 K_tri (e_11 + e_22)^2 + 1/2 K_dev ((e_11 - e_22)^2 + (2 e_12)^2)``; the first strain is
+    the relative change of area, dA/A. Matrix that is squeezed by all three bonds is stiffer than
+    the three say; where one bond makes room for what another presses out, it is softer: K_dev may
+    be negative.
     """
 
     corners: NDArray[np.int64]
     stiffness: FloatArray
+    deviator: FloatArray
 
     @property
     def count(self) -> int:
@@ -33,32 +44,36 @@ class Pockets:
         return len(self.corners)
 
 
-def pockets(corners: ArrayLike, stiffness: ArrayLike) -> Pockets:
+def pockets(corners: ArrayLike, stiffness: ArrayLike, deviator: ArrayLike = 0.0) -> Pockets:
     """Pockets between three nodes each.
 
     Parameters
     ----------
     corners
         Shape (pockets, 3).
-    stiffness
-        K_tri [J]; a single number holds for all.
+    stiffness, deviator
+        K_tri and K_dev [J]; single numbers hold for all.
 
     Raises
     ------
     InputError
-        A stiffness is negative or no number.
+        K_tri is negative, or one of them is no number.
     """
     nodes = np.asarray(corners, dtype=np.int64).reshape(-1, 3)
-    given = np.asarray(stiffness, dtype=np.float64)
-    violations = []
-    if given.shape not in ((), (len(nodes),)):
-        allowed = f"one number or {len(nodes)} of them"
-        violations.append(Violation("pockets.stiffness", given.shape, allowed))
-    elif not (np.isfinite(given) & (given >= 0)).all():
-        violations.append(Violation("pockets.stiffness", given.tolist(), "[0, inf) J"))
+    arrays, violations = [], []
+    for name, given, low in (("stiffness", stiffness, 0.0), ("deviator", deviator, -np.inf)):
+        array = np.asarray(given, dtype=np.float64)
+        if array.shape not in ((), (len(nodes),)):
+            allowed = f"one number or {len(nodes)} of them"
+            violations.append(Violation(f"pockets.{name}", array.shape, allowed))
+        elif not (np.isfinite(array) & (array >= low)).all():
+            allowed = "[0, inf) J" if low == 0 else "finite numbers, J"
+            violations.append(Violation(f"pockets.{name}", array.tolist(), allowed))
+        else:
+            arrays.append(np.broadcast_to(array, len(nodes)).copy())
     if violations:
         raise InputError(violations)
-    return Pockets(nodes, np.broadcast_to(given, len(nodes)).copy())
+    return Pockets(nodes, *arrays)
 
 
 def triangles(pairs: NDArray[np.int64], count: int) -> NDArray[np.int64]:
@@ -82,12 +97,19 @@ def triangles(pairs: NDArray[np.int64], count: int) -> NDArray[np.int64]:
     return np.array(sorted(found), dtype=np.int64).reshape(-1, 3)
 
 
-def area_strains(points: FloatArray, corners: NDArray[np.int64]) -> FloatArray:
-    """Relative change of area by the corners' displacements, shape (triangles, 3, dimension).
+def triangle_strains(points: FloatArray, corners: NDArray[np.int64]) -> FloatArray:
+    """Uniform strains of triangles by their corners' displacements.
+
+    Returns
+    -------
+    numpy.ndarray
+        Rows ``e_11 + e_22``, ``e_11 - e_22`` and ``2 e_12`` in the plane of each triangle, shape
+        (triangles, 3, 3 corners, dimension).
 
     Notes
     -----
-    ``dA/dx_k = m x (x_(k+2) - x_(k+1)) / 2`` with m the normal of the triangle.
+    The linear function that is one at corner k has the gradient ``m x (x_(k+2) - x_(k+1)) / 2A``,
+    m the normal of the triangle.
     """
     where = np.zeros((*corners.shape, 3))
     where[..., : points.shape[1]] = points[corners]
@@ -95,5 +117,13 @@ def area_strains(points: FloatArray, corners: NDArray[np.int64]) -> FloatArray:
     normal = np.cross(where[:, 1] - where[:, 0], where[:, 2] - where[:, 0])
     twice = np.linalg.norm(normal, axis=1)
     normal /= twice[:, np.newaxis]
-    change = np.cross(normal[:, np.newaxis], opposite) / twice[:, np.newaxis, np.newaxis]
-    return np.asarray(change[..., : points.shape[1]])
+    gradient = np.cross(normal[:, np.newaxis], opposite) / twice[:, np.newaxis, np.newaxis]
+    one = where[:, 1] - where[:, 0]
+    one /= np.linalg.norm(one, axis=1, keepdims=True)
+    two = np.cross(normal, one)
+    along, across = (
+        np.einsum("tki,ti->tk", gradient, axis)[..., np.newaxis] for axis in (one, two)
+    )
+    one, two = one[:, np.newaxis], two[:, np.newaxis]
+    rows = [along * one + across * two, along * one - across * two, along * two + across * one]
+    return np.stack(rows, axis=1)[..., : points.shape[1]]
