@@ -52,7 +52,7 @@ def ask(model: Model, load: str, cell: Cell, **options: Any) -> tuple[Springs, N
     """
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
         springs = model.loads[load](cell, **options)
-    outside = ~model.is_valid(cell)
+    outside = ~model.holds(load, cell)
     status = np.where(outside, Status.outside_valid_range, Status.ok).astype(np.int8)
     missing = ~np.isfinite(springs.stiffness)
     if not np.any(missing):

@@ -58,7 +58,8 @@ def fields(space: Domain, geometry: Geometry, trace_i: Traces, trace_j: Traces) 
     - a particle's motion goes on as ``psi/r = [F_0 R^2/|x|^2 + phi (u_z - R cos(theta) u_r/r)/R]
       (1 - S)`` with F_0, u_z, u_r/r of its surface at the same angle.
     """
-    along, thickness = _along(space), 1.0 / space.span
+    v, thickness = film_coordinate(space), 1.0 / space.span
+    along = legendre(v.value, max(n for family in ODD.values() for n in family.values()))
     total = space.above_i + space.above_j
     s = space.above_i / total
     bubble = space.above_i * space.above_j / (total * total)
@@ -73,8 +74,8 @@ def fields(space: Domain, geometry: Geometry, trace_i: Traces, trace_j: Traces) 
         for name, counts in table.items():
             for power, count in counts.items():
                 base = bases[name] * powers[power] if power else bases[name]
-                functions = Curve(along[0][:count], along[1][:count], along[2][:count])
-                families[name].append(_rows(name, base, _film_coordinate(space), functions, r))
+                functions = Curve(along.value[:count], along.first[:count], along.second[:count])
+                families[name].append(_rows(name, base, v, functions, r))
     lower = _continued(space.z, space, geometry.radius_i, space.above_i, 1.0 - step, trace_i)
     upper = _continued(space.height, space, geometry.radius_j, space.above_j, step, trace_j)
     joined = [lower - upper] if geometry.mirrored else [lower, -upper]
@@ -130,23 +131,21 @@ def _powers(x: Jet) -> dict[int, Jet]:
     return {1: x, 2: square, 3: square * x}
 
 
-def _film_coordinate(space: Domain) -> Jet:
+def film_coordinate(space: Domain) -> Jet:
     """``v``: the logarithm of the thickness, from -1 to 1 over the domain."""
     log = space.span.log()
     low, high = (end(log.value, axis=-1, keepdims=True) for end in (np.min, np.max))
     return (log - low) * (2 / (high - low)) - 1.0
 
 
-def _along(space: Domain) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Legendre polynomials of v and their derivatives, shape (degrees, cells, points)."""
-    x = _film_coordinate(space).value
-    count = max(n for family in ODD.values() for n in family.values())
+def legendre(x: FloatArray, count: int) -> Curve:
+    """The first Legendre polynomials and their derivatives, shape (count, ...)."""
     value, first, second = [np.ones_like(x), x], [0 * x, np.ones_like(x)], [0 * x, 0 * x]
     for k in range(1, count - 1):
         value.append(((2 * k + 1) * x * value[k] - k * value[k - 1]) / (k + 1))
         first.append(first[k - 1] + (2 * k + 1) * value[k])
         second.append(second[k - 1] + (2 * k + 1) * first[k])
-    return np.stack(value), np.stack(first), np.stack(second)
+    return Curve(np.stack(value), np.stack(first), np.stack(second))
 
 
 def _continued(

@@ -96,7 +96,9 @@ class Model:
     options
         Option name -> what it does.
     is_valid
-        Which points of a cell lie in the valid range.
+        Which points of a cell lie in the valid range, for every load.
+    limits
+        Load name -> which points lie in a range of that load's own; both count.
     is_reference
         Whether it is the finite element reference, which `bondcell.evaluate` runs by geometry.
     from_reference
@@ -111,5 +113,10 @@ class Model:
     loads: Mapping[str, Callable[..., Springs]]
     options: Mapping[str, str] = field(default_factory=dict)
     is_valid: Callable[[Cell], NDArray[np.bool_]] = everywhere
+    limits: Mapping[str, Callable[[Cell], NDArray[np.bool_]]] = field(default_factory=dict)
     is_reference: bool = False
     from_reference: bool = False
+
+    def holds(self, load: str, cell: Cell) -> NDArray[np.bool_]:
+        """Which points of a cell lie in the valid range of a load."""
+        return np.asarray(self.is_valid(cell) & self.limits.get(load, everywhere)(cell))
