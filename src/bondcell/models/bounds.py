@@ -1,4 +1,4 @@
-"""Certified bounds of the normal stiffness, from a stress field below and displacements above."""
+"""Certified bounds of normal stiffness and torsion, from a stress field below and displacements above."""
 
 from __future__ import annotations
 
@@ -43,7 +43,15 @@ def normal(cell: Cell) -> Springs:
     >>> {name: float(part.round(-1)) for name, part in normal(cell).parts.items()}
     {'lower': 84030.0, 'upper': 87250.0}
     """
-    below, above = generatrix.normal(cell), film.normal(cell)
+    return _between(cell, generatrix.normal(cell), film.normal(cell))
+
+
+def torsion(cell: Cell) -> Springs:
+    """Interval that holds the stiffness against torsion, as `normal` does for the normal load."""
+    return _between(cell, generatrix.torsion(cell), film.torsion(cell))
+
+
+def _between(cell: Cell, below: Springs, above: Springs) -> Springs:
     lower = below.stiffness * (1 - below.relative_error)
     upper = above.stiffness * (1 + above.relative_error)
     middle = (lower + upper) / 2
@@ -58,6 +66,6 @@ BOUNDS = Model(
     source="Derived for this project: least complementary and least potential energy.",
     valid_range="The interval holds wherever the film model is resolved; as an estimate its "
     "middle is off by up to half the interval, which is reported as the error.",
-    loads={"normal": normal},
+    loads={"normal": normal, "torsion": torsion},
     is_valid=film.is_resolved,
 )
