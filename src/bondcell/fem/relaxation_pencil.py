@@ -128,8 +128,7 @@ def _fit(
     values = np.array([stiffness(float(share)) for share in x])
     for attempt in range(ROUNDS):
         fit = positive_fit(x, values, has_constant)
-        widest = np.sort(np.argsort(-np.diff(np.log(x)), kind="stable")[:MORE])
-        fresh = np.sqrt(x[widest] * x[widest + 1])
+        fresh = _doubtful(fit, positive_fit(x[::2], values[::2], has_constant), x)
         found = np.array([stiffness(float(share)) for share in fresh])
         missed = float(np.abs(fit(fresh) / found - 1).max())
         if missed <= REDUCTION or attempt == ROUNDS - 1:
@@ -138,6 +137,13 @@ def _fit(
         x = np.concatenate((x, fresh))[order]
         values = np.concatenate((values, found))[order]
     return fit, max(missed, fit.error, REDUCTION)
+
+
+def _doubtful(fit: PositiveFit, other: PositiveFit, x: FloatArray) -> FloatArray:
+    """Moduli between the known ones where fits of all and of half of the values differ most."""
+    between = np.sqrt(x[:-1] * x[1:])
+    differ = np.abs(fit(between) / other(between) - 1)
+    return np.asarray(between[np.sort(np.argsort(-differ, kind="stable")[:MORE])])
 
 
 def _series(fit: PositiveFit, matrix: Relaxing) -> Chain:

@@ -1,0 +1,84 @@
+"""Relaxation of one cell from complex moduli by Laplace inversion: a check of the exact series.
+
+The full system is solved at complex values of the Laplace variable; no pole, no eigenvalue and no
+time step is involved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csc_array
+from scipy.sparse.linalg import splu
+
+from bondcell.cell import FloatArray
+from bondcell.fem.full_system import FullSystem
+from bondcell.fem.threads import one_thread
+from bondcell.fem.time_stepping import operators
+from bondcell.prony.conventions import Relaxing
+
+NODES = 18
+"""Points of the contour: truncation and round-off are then near 1e-11."""
+
+
+@one_thread()
+def invert_reference(matrix: Relaxing, system: FullSystem, times: ArrayLike) -> FloatArray:
+    """Stiffness at a few times, ``NODES`` complex solutions each.
+
+    Parameters
+    ----------
+    matrix
+        One cell and how its matrix relaxes, with ``constant_bulk`` or ``constant_poisson``.
+    system
+        The cell's operators.
+    times
+        Positive times [s].
+    """
+    lasting, relaxing = operators(matrix, system)
+    chain = matrix.prony.shear
+
+    def transform(s: complex) -> complex:
+        share = chain.equilibrium + (chain.strengths / (1 + 1 / (s * chain.times))).sum()
+        return stiffness_at(system, lasting, relaxing, complex(share)) / s
+
+    return np.array([talbot(transform, float(t)) for t in np.atleast_1d(times)])
+
+
+def stiffness_at(
+    system: FullSystem, lasting: csc_array, relaxing: csc_array, share: complex
+) -> complex:
+    """Stiffness where the relaxing moduli have a complex share of their values at t = 0."""
+    free, lift = np.flatnonzero(system.free), system.lift
+    of_lift = lasting @ lift - system.particles @ lift + share * (relaxing @ lift)
+    whole = csc_array((lasting + share * relaxing)[np.ix_(free, free)])
+    beyond: NDArray[np.complex128] = np.zeros(lift.size, dtype=complex)
+    beyond[free] = splu(whole).solve(-of_lift[free])
+    return (
+        complex(lift @ (of_lift + lasting @ beyond + share * (relaxing @ beyond))) * system.factor
+    )
+
+
+def talbot(transform: Callable[[complex], complex], time: float, nodes: int = NODES) -> float:
+    """Inverse Laplace transform at one time by the fixed Talbot contour.
+
+    Notes
+    -----
+    ``s(theta) = r theta (cot theta + i)``, ``r = 2 M/(5 t)``, trapezoidal in theta (Abate and
+    Valko 2004).
+
+    Examples
+    --------
+    >>> round(talbot(lambda s: 1 / (s + 1), 2.0), 9)
+    0.135335283
+    """
+    r = 2 * nodes / (5 * time)
+    total = 0.5 * np.exp(r * time) * transform(complex(r)).real
+    for k in range(1, nodes):
+        theta = k * np.pi / nodes
+        cotangent = 1 / np.tan(theta)
+        s = r * theta * (cotangent + 1j)
+        slope = theta + (theta * cotangent - 1) * cotangent
+        total += (np.exp(time * s) * transform(complex(s)) * (1 + 1j * slope)).real
+    return float(r / nodes * total)
