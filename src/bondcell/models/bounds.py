@@ -1,4 +1,4 @@
-"""Certified bounds of normal stiffness and torsion, from a stress field below and displacements above."""
+"""Certified bounds of normal stiffness and torsion: stresses below, displacements above."""
 
 from __future__ import annotations
 

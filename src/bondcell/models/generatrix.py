@@ -144,6 +144,6 @@ GENERATRIX = Model(
     "2013, section 4.",
     valid_range="Every cell: a rigorous lower bound of the stiffness between frictionless plates "
     "at any Poisson's ratio, and of the torsion. As an estimate of the normal stiffness it is "
-    "close for poisson_m near 0 only; shear within some per cent, torsion and bending far too soft.",
+    "close for poisson_m near 0 only; shear within some per cent, torsion and bending too soft.",
     loads={"normal": normal, "shear": shear, "torsion": torsion, "bending": bending},
 )
