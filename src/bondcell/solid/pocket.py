@@ -38,26 +38,6 @@ class TriangleEnergies:
     length: float
     dof: int
 
-    def pocket(self, normal: float) -> float:
-        """K_tri [J]: what the bonds, half of each side's, do not explain of the dilation.
-
-        Notes
-        -----
-        Three half bonds stretched by ``L`` and the area change ``dA/A = 2`` under unit strain:
-        ``2 U = 3/2 K_n L^2 + 4 K_tri``.
-        """
-        return (self.dilation - 1.5 * normal * self.length**2) / 4
-
-    def pocket_deviator(self, normal: float, shear: float) -> float:
-        """K_dev [J]: the same of the deviator, often negative.
-
-        Notes
-        -----
-        The bonds' lengthening and sliding under the strain (1, -1), and ``e_11 - e_22 = 2``:
-        ``2 U = 3/4 (K_n + K_s) L^2 + 4 K_dev``.
-        """
-        return (self.deviator - 0.75 * (normal + shear) * self.length**2) / 4
-
 
 def triangle_energies(
     radius: float, gap: float, depth: float, matrix: Elastic, per_gap: float = PER_GAP
