@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from bondcell.bond_tables import reduce_series, write_bond_table
     from bondcell.errors import (
         BondcellError,
         DataError,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from bondcell.evaluate import evaluate
     from bondcell.models import MODELS
     from bondcell.prony.prony import Prony, PronyError
+    from bondcell.prony_files import read_prony
     from bondcell.relaxation import dynamic_stiffness, relaxation, relaxation_series
     from bondcell.status import Status
 
@@ -52,8 +54,11 @@ __all__ = [
     "__version__",
     "dynamic_stiffness",
     "evaluate",
+    "read_prony",
+    "reduce_series",
     "relaxation",
     "relaxation_series",
+    "write_bond_table",
 ]
 
 _HOME = {
@@ -71,8 +76,11 @@ _HOME = {
     "Violation": "bondcell.errors",
     "dynamic_stiffness": "bondcell.relaxation",
     "evaluate": "bondcell.evaluate",
+    "read_prony": "bondcell.prony_files",
+    "reduce_series": "bondcell.bond_tables",
     "relaxation": "bondcell.relaxation",
     "relaxation_series": "bondcell.relaxation",
+    "write_bond_table": "bondcell.bond_tables",
 }
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -130,16 +132,38 @@ def _lowest(matrix: Relaxing) -> float:
 def _fitted(
     formula: Callable[..., Any], matrix: Relaxing, options: dict[str, Any]
 ) -> tuple[Chain, FloatArray]:
-    def values(shares: FloatArray) -> FloatArray:
-        return np.array([_value(formula, matrix.at(float(x)), options) for x in shares])
-
     modulus = matrix.shear
-    bank, error = sampled_bank(values, modulus, float(matrix.prony.shear.equilibrium))
+    end = float(matrix.prony.shear.equilibrium)
+    state = np.concatenate([*matrix.cell.as_dict().values()]).tobytes()
+    asked = _Asked(formula, state, matrix.convention, end, tuple(options.items()), matrix)
+    bank, error = _fit(asked)
     series = bank.relaxation(matrix.prony.shear, modulus, np.zeros(modulus.shape))
     missing = np.isnan(error)
     series.equilibrium[missing] = np.nan
     series.strengths[missing] = np.nan
     return series, SAMPLED_FACTOR * error
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What a fit depends on: of the series only its end, not its terms."""
+
+    formula: Callable[..., Any]
+    state: bytes
+    convention: str
+    end: float
+    options: tuple[tuple[str, Any], ...]
+    matrix: Relaxing = field(compare=False, repr=False)
+
+
+@lru_cache(maxsize=8)
+def _fit(asked: _Asked) -> tuple[Bank, FloatArray]:
+    matrix, options = asked.matrix, dict(asked.options)
+
+    def values(shares: FloatArray) -> FloatArray:
+        return np.array([_value(asked.formula, matrix.at(float(x)), options) for x in shares])
+
+    return sampled_bank(values, matrix.shear, asked.end)
 
 
 def _value(formula: Callable[..., Any], cell: Cell, options: dict[str, Any]) -> FloatArray:

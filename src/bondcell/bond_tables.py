@@ -1,0 +1,119 @@
+"""A bond's Prony series as a table for discrete element codes, as it is or with few terms."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from bondcell.errors import InputError, Violation
+from bondcell.prony.chain import Chain
+from bondcell.prony.reduction import reduce_chain
+from bondcell.storage import replacing
+
+SERIES = ("K_inf", "K_k", "tau_k")
+
+
+def reduce_series(series: xr.Dataset, terms: int, window: tuple[float, float]) -> xr.Dataset:
+    """Replace each point's series by one of at most ``terms`` terms.
+
+    Parameters
+    ----------
+    series
+        What `bondcell.relaxation_series` gave.
+    terms
+        Number of Maxwell elements that the bond may have.
+    window
+        First and last time [s] of the simulation.
+
+    Returns
+    -------
+    xarray.Dataset
+        The same variables; ``reduction_error(...)`` is the largest relative error of K(t) in the
+        window, ``error_estimate`` includes it; attribute ``window``.
+    """
+    _check(series)
+    dims = series.K_inf.dims
+    strengths = series.K_k.transpose(*dims, "term").values
+    times = series.tau_k.transpose(*dims, "term").values
+    shape = series.K_inf.shape
+    K_inf = series.K_inf.values
+    found = np.full((*shape, terms), np.nan), np.full((*shape, terms), np.nan)
+    error = np.full(shape, np.nan)
+    for point in np.ndindex(shape):
+        own = np.isfinite(strengths[point])
+        if not np.isfinite(K_inf[point]):
+            continue
+        chain = Chain(np.asarray(K_inf[point]), strengths[point][own], times[point][own])
+        few, error[point] = reduce_chain(chain, terms, window)
+        found[0][point][: few.count], found[1][point][: few.count] = few.strengths, few.times
+    reduced = series.drop_vars(["K_k", "tau_k"]).assign(
+        K_k=((*dims, "term"), found[0], series.K_k.attrs),
+        tau_k=((*dims, "term"), found[1], series.tau_k.attrs),
+        reduction_error=(
+            dims,
+            error,
+            {"units": "1", "long_name": "largest relative error of K(t) in the window"},
+        ),
+    )
+    if "error_estimate" in reduced:
+        reduced["error_estimate"] = (dims, reduced.error_estimate.values + error)
+        reduced.error_estimate.attrs = series.error_estimate.attrs
+    return reduced.assign_attrs(window=[float(window[0]), float(window[1])])
+
+
+def write_bond_table(series: xr.Dataset, path: str | Path) -> Path:
+    """Write the series of one point as a CSV table to be typed into a generalised Maxwell bond.
+
+    Parameters
+    ----------
+    series
+        One point of `bondcell.relaxation_series` or `reduce_series`; several points belong into
+        netCDF, `bondcell.storage.write_dataset`.
+    path
+        The file.
+
+    Returns
+    -------
+    pathlib.Path
+        `path`. Columns: ``element`` (0 is the lasting spring), ``stiffness``, ``relaxation_time``
+        [s], ``viscosity`` (stiffness times time); units, model and errors stand in remarks.
+    """
+    _check(series)
+    if series.K_inf.size != 1:
+        given = dict(series.K_inf.sizes)
+        raise InputError([Violation("series", given, "one point, for example series.isel(gap=0)")])
+    units = str(series.K_inf.attrs.get("units", "N m-1"))
+    remarks = {name: series.attrs[name] for name in sorted(series.attrs)}
+    for name in ("error_estimate", "reduction_error"):
+        if name in series:
+            remarks[name] = f"{series[name].item():.3g}"
+    for axis, coord in series.coords.items():
+        if coord.size == 1:
+            remarks[str(axis)] = f"{coord.item()!r} {coord.attrs.get('units', '')}".strip()
+    strengths, times = series.K_k.values.ravel(), series.tau_k.values.ravel()
+    used = np.isfinite(strengths)
+    with replacing(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+        for name, value in remarks.items():
+            file.write(f"# {name}: {value}\n")
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(
+            ["element", f"stiffness [{units}]", "relaxation_time [s]", f"viscosity [{units} s]"]
+        )
+        table.writerow([0, repr(float(series.K_inf.item())), "inf", "inf"])
+        pairs = zip(strengths[used].tolist(), times[used].tolist(), strict=True)
+        for number, (strength, tau) in enumerate(pairs, start=1):
+            table.writerow([number, repr(strength), repr(tau), repr(strength * tau)])
+    return Path(path)
+
+
+def _check(series: xr.Dataset) -> None:
+    missing = [
+        Violation(name, None, "a variable of what bondcell.relaxation_series gives")
+        for name in SERIES
+        if name not in series
+    ]
+    if missing:
+        raise InputError(missing)

@@ -1,0 +1,137 @@
+"""Tables in and out: the two common conventions, errors by line, few terms, the bond's table."""
+
+import csv
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import bondcell
+from bondcell import Prony, PronyError
+from bondcell.prony.chain import Chain
+from bondcell.prony.reduction import reduce_chain
+
+PAIRED = "# asphalt\ng,k,tau\n0.3,0.1,1e-3\n0.2,0,1\n"
+SPLIT = "table,weight,tau\nshear,0.3,1e-3\nshear,0.2,1\nbulk,0.1,1e-3\n"
+YAML = "relative_to: instantaneous\nshear: [[0.3, 1e-3], [0.2, 1]]\nbulk: [[0.1, 1e-3]]\n"
+LISTS = "g: [0.3, 0.2]\nk: [0.1, 0]\ntau: [1e-3, 1]\n"
+
+
+def written(folder, name, text):
+    path = folder / name
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [("a.csv", PAIRED), ("b.csv", SPLIT), ("c.yaml", YAML), ("d.yml", LISTS)],
+)
+def test_every_form_reads_the_same(tmp_path, name, text):
+    prony = bondcell.read_prony(written(tmp_path, name, text))
+    np.testing.assert_array_equal(prony.shear.strengths, [0.3, 0.2])
+    np.testing.assert_array_equal(prony.shear.times, [1e-3, 1.0])
+    assert prony.bulk is not None
+    np.testing.assert_array_equal(prony.bulk.strengths, [0.1])
+    np.testing.assert_array_equal(prony.bulk.times, [1e-3])
+
+
+def test_a_bulk_modulus_that_does_not_relax_is_none(tmp_path):
+    assert bondcell.read_prony(written(tmp_path, "a.csv", "g,k,tau\n0.3,0,1\n")).bulk is None
+    assert bondcell.read_prony(written(tmp_path, "b.csv", "g,tau\n0.3,1\n")).bulk is None
+
+
+def test_absolute_moduli_from_yaml(tmp_path):
+    text = "relative_to: absolute\nlong_term: 1e6\nmodulus: young\nshear: [[3e6, 1.0]]\n"
+    prony = bondcell.read_prony(written(tmp_path, "a.yaml", text))
+    assert prony.instantaneous_modulus == 4e6
+
+
+def test_errors_name_the_line(tmp_path):
+    path = written(tmp_path, "a.csv", "g,k,tau\n0.3,0.1,1\nhalf,0.1,0\n0.2,1\n-1,0,2\n")
+    with pytest.raises(PronyError) as caught:
+        bondcell.read_prony(path)
+    fields = [violation.field for violation in caught.value.violations]
+    assert fields == ["line 3, g", "line 3, tau", "line 4", "line 5, g"]
+    assert "a.csv" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "field"),
+    [
+        ("a.csv", "tau,g\n1,0.3\n", "header"),
+        ("a.csv", "", "header"),
+        ("a.csv", "table,weight,tau\nshare,0.1,1\n", "line 2, table"),
+        ("a.csv", "g,tau\n0.7,1\n0.6,2\n", "sum of weights"),
+        ("a.yaml", "shear: 0.3\n", "shear"),
+        ("a.yaml", "g: [0.1]\ntau: [1, 2]\n", "g, k, tau"),
+        ("a.yaml", "shear: [[0.1, 1]]\nsheer: 1\n", "sheer"),
+        ("a.txt", "", "file"),
+    ],
+)
+def test_each_slip_of_a_file(tmp_path, name, text, field):
+    with pytest.raises(PronyError) as caught:
+        bondcell.read_prony(written(tmp_path, name, text))
+    assert [violation.field for violation in caught.value.violations] == [field]
+
+
+def test_missing_file():
+    with pytest.raises(PronyError, match="file"):
+        bondcell.read_prony("nowhere.csv")
+
+
+def series():
+    study = xr.Dataset(
+        {
+            "radius_i": 7.5e-3,
+            "young_i": 3e10,
+            "poisson_i": 0.25,
+            "young_m": 1.4e6,
+            "poisson_m": 0.46,
+        },
+        coords={"gap": [1e-4, 5e-4]},
+    )
+    return bondcell.relaxation_series(study, Prony([0.3, 0.3, 0.3], [1e-3, 1.0, 1e3]), "generatrix")
+
+
+def test_reduced_series_keeps_its_stated_error():
+    full, window = series(), (1e-4, 1e4)
+    few = bondcell.reduce_series(full, 3, window)
+    assert few.sizes["term"] == 3 < full.sizes["term"]
+    t = xr.DataArray(np.geomspace(*window, 777), dims="time")
+
+    def curve(own):
+        return own.K_inf + (own.K_k * np.exp(-t / own.tau_k)).sum("term")
+
+    error = np.abs(curve(few) / curve(full) - 1).max("time")
+    assert (error <= 1.01 * few.reduction_error + 1e-12).all()
+    assert (few.reduction_error < 1e-2).all()
+    assert (few.error_estimate >= few.reduction_error).all()
+    more = bondcell.reduce_series(full, 500, window)
+    np.testing.assert_array_equal(more.reduction_error, 0.0)
+
+
+def test_reduction_converges():
+    chain = Chain(np.array(0.05), np.full(40, 1.0), np.geomspace(1e-4, 1e4, 40))
+    errors = [reduce_chain(chain, n, (1e-3, 1e3))[1] for n in (2, 4, 8)]
+    assert errors[0] > 3 * errors[1] > 9 * errors[2]
+    with pytest.raises(bondcell.InputError, match=r"terms.*\n.*window"):
+        reduce_chain(chain, 0, (1.0, 0.5))
+
+
+def test_table_of_one_bond(tmp_path):
+    one = bondcell.reduce_series(series(), 3, (1e-4, 1e4)).isel(gap=0)
+    path = bondcell.write_bond_table(one, tmp_path / "bond.csv")
+    lines = path.read_text().splitlines()
+    remarks = [line for line in lines if line.startswith("#")]
+    assert any("model: generatrix" in line for line in remarks)
+    assert any(line.startswith("# reduction_error") for line in remarks)
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    stiffness = [float(row["stiffness [N m-1]"]) for row in rows]
+    times = [float(row["relaxation_time [s]"]) for row in rows]
+    np.testing.assert_array_equal(stiffness, [one.K_inf.item(), *one.K_k.values])
+    np.testing.assert_array_equal(times, [np.inf, *one.tau_k.values])
+    with pytest.raises(bondcell.InputError, match="one point"):
+        bondcell.write_bond_table(series(), tmp_path / "bonds.csv")
+    with pytest.raises(bondcell.InputError, match="K_inf"):
+        bondcell.write_bond_table(xr.Dataset(), tmp_path / "none.csv")
