@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 
 import numpy as np
@@ -18,7 +18,6 @@ import numpy as np
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem.cell_mesh import Geometry
 from bondcell.fem.materials import Materials
-from bondcell.fem.reference import Reference
 from bondcell.fem.reference import solve as solve_reference
 from bondcell.fem.structured import CellSolver, find_load, geometry_of
 from bondcell.fem.threads import one_thread
@@ -42,6 +41,9 @@ FLAT = 1e-2
 
 TIME_FACTOR = 10.0
 """Error of K(t) over that in the modulus, tests/verification/test_time_stepping.py."""
+
+
+_NOTHING = Chain(np.asarray(np.nan), np.empty(0), np.empty(0))
 
 
 @dataclass(frozen=True)
@@ -87,11 +89,55 @@ def relax(
     """
     started = time.perf_counter()
     end = float(matrix.prony.shear.equilibrium)
+    state = np.concatenate([*matrix.cell.as_dict().values()]).tobytes()
+    reduced = _reduced(_Asked(state, matrix.convention, end, load, bc, tolerance, matrix))
+    known = reduced.fit is not None
+    series = _series(reduced.fit, matrix) if reduced.fit is not None else _NOTHING
+    return RelaxingReference(
+        series=series,
+        error_estimate=reduced.discretisation + reduced.reduction if known else np.nan,
+        reduction_error=reduced.reduction,
+        status=reduced.status,
+        order=reduced.order,
+        dof=reduced.dof,
+        seconds=time.perf_counter() - started,
+    )
+
+
+@dataclass(frozen=True)
+class _Asked:
+    """What a reduced model depends on: of the series only its end, not its terms."""
+
+    state: bytes
+    convention: str
+    end: float
+    load: str
+    bc: str
+    tolerance: float
+    matrix: Relaxing = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class _Reduced:
+    """The stiffness in the relaxing modulus, None without a value."""
+
+    fit: PositiveFit | None
+    discretisation: float
+    reduction: float
+    status: Status
+    order: int
+    dof: int
+
+
+@lru_cache(maxsize=16)
+def _reduced(asked: _Asked) -> _Reduced:
+    matrix, end, load, bc = asked.matrix, asked.end, asked.load, asked.bc
     lowest = max(end / REACH, FLAT * _gap_ratio(matrix.cell))
     states = _stacked(matrix.at(1.0), matrix.at(max(end, lowest)))
-    ends = solve_reference(states, load=load, bc=bc, tolerance=max(tolerance / 3, 1e-12))
+    ends = solve_reference(states, load=load, bc=bc, tolerance=max(asked.tolerance / 3, 1e-12))
     if not np.isfinite(ends.stiffness).all():
-        return _failed(ends, time.perf_counter() - started)
+        worst = Status(int(ends.status[~np.isfinite(ends.stiffness)].max()))
+        return _Reduced(None, np.nan, np.nan, worst, 0, 0)
     order = int(ends.order.max())
     solver = _solver(geometry_of(matrix.cell), load, bc, _is_half(matrix.cell), order)
 
@@ -102,16 +148,9 @@ def relax(
     known = np.array([1.0, max(end, lowest)])
     discretisation = float((ends.error_estimate + np.abs(fit(known) / ends.stiffness - 1)).max())
     reduction = TIME_FACTOR * missed
-    error = discretisation + reduction
-    return RelaxingReference(
-        series=_series(fit, matrix),
-        error_estimate=error,
-        reduction_error=reduction,
-        status=Status.ok if error <= tolerance else Status.tolerance_not_met,
-        order=order,
-        dof=solver.dof,
-        seconds=time.perf_counter() - started,
-    )
+    good = discretisation + reduction <= asked.tolerance
+    status = Status.ok if good else Status.tolerance_not_met
+    return _Reduced(fit, discretisation, reduction, status, order, solver.dof)
 
 
 def _carries_pressure(matrix: Relaxing, load: str, bc: str) -> bool:
@@ -151,12 +190,6 @@ def _series(fit: PositiveFit, matrix: Relaxing) -> Chain:
     bank = Bank(strength[None], softness[None], np.array([fit.constant]))
     series = bank.relaxation(matrix.prony.shear, np.ones(1), np.zeros(1))
     return Chain(series.equilibrium[0], series.strengths[0], series.times[0])
-
-
-def _failed(ends: Reference, seconds: float) -> RelaxingReference:
-    nothing = Chain(np.asarray(np.nan), np.empty(0), np.empty(0))
-    worst = Status(int(ends.status[~np.isfinite(ends.stiffness)].max()))
-    return RelaxingReference(nothing, np.nan, np.nan, worst, 0, 0, seconds)
 
 
 @lru_cache(maxsize=4)
