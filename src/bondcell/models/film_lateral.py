@@ -31,10 +31,13 @@ FAMILIES = {
 }
 """Family -> power of ``1 - 2 s`` -> number of radial functions."""
 
+RIM = 0.1
+"""Thickness of a soft particle's layer at its end plane, radii."""
+
 FLOWS = 5
 """Widths of the flows across the film."""
 
-DEPTH_POINTS = 6
+DEPTH_POINTS = 8
 """Gauss points across a panel along a particle's radius and along its angle."""
 
 
@@ -239,8 +242,8 @@ def _particle_fields(
 ) -> list[Field]:
     """Fields of a particle, zero on its end plane.
 
-    Polynomials; and times ``z/R`` a point force across the axis and a couple of centres of
-    dilatation, outside the pole.
+    Polynomials; a layer at the held plane, ``z/(z + d)``, for soft particles; and times ``z/R`` a
+    point force across the axis and a couple of centres of dilatation, outside the pole.
     """
     square = r * r
     fields = [
@@ -250,8 +253,14 @@ def _particle_fields(
         Field(None, None, z),
         Field(None, None, z * z),
         Field(z, None, None),
+        Field(None, z * z * z, None),
+        Field(None, None, z * square),
+        Field(None, None, z * z * z),
+        Field(z * z, None, None),
     ]
     rise = z * (1 / radius)
+    layer = z / (z + RIM * radius)
+    fields += [Field(layer, None, None), Field(None, layer, None), Field(None, None, layer)]
     for distance in far:
         y = z - (radius + distance)
         inv = 1.0 / (square + y * y).sqrt()
