@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import time
-from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
 from bondcell.fem.structured import CellSolver, Load
-
-IndexArray = NDArray[np.int64]
 
 ORDERS = (4, 6, 8, 10, 12, 14)
 """Polynomial orders of the rungs."""
@@ -21,8 +17,8 @@ ORDERS = (4, 6, 8, 10, 12, 14)
 LARGEST = 16_000
 """Elements times order squared, a bound on unknowns and time: the ladder ends there."""
 
-FEW = 8
-"""Points up to which each climbs from the first rung."""
+FEW, LOOSE = 8, 1e-5
+"""Points up to which each climbs from the first rung, and tolerances where all do."""
 
 REDUCTION = 20
 """A reduced basis may add the tolerance over this."""
@@ -73,51 +69,30 @@ class Ladder:
         self.reduction_error, self.seconds = np.zeros(count), np.zeros(count)
         self.order, self.dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
         self.way = np.zeros(count, dtype=np.int8)
-        self._round_off = _round_off(geometry, materials)
-        self._materials, self._tolerance = materials, tolerance
-        self._rungs = np.full((count, len(ORDERS)), np.nan)
-        self._solver = partial(CellSolver, geometry, load, half)
-        self._rate, self._clock = load.rate, time.perf_counter()
-        self._mesh = build_cell_mesh(geometry, grading, half)
-        everyone = np.arange(count)
-        if count <= FEW:
-            self._climb(everyone, 0, {})
-            return
-        # What few points need tells where the others may start: one rung below.
-        pioneers = _pioneers(materials)
-        solvers: dict[int, CellSolver] = {}
-        self._climb(pioneers, 0, solvers)
-        reached = np.isfinite(self._rungs[pioneers]).sum(axis=1)
-        self._climb(np.setdiff1d(everyone, pioneers), max(0, int(reached.min()) - 2), solvers)
-
-    def _climb(self, points: IndexArray, start: int, solvers: dict[int, CellSolver]) -> None:
-        """Climb from a rung until the tolerance is met; ``solvers`` of orders are used and kept."""
+        round_off = _round_off(geometry, materials)
+        rungs = np.full((count, len(ORDERS)), np.nan)
+        clock = time.perf_counter()
+        mesh = build_cell_mesh(geometry, grading, half)
+        # Many points judge each other's steps, and the first rung is never the last one needed.
+        start = 1 if count > FEW and tolerance < LOOSE else 0
+        points = np.arange(count)
         for number, order in enumerate(ORDERS[start:], start):
-            if not points.size or self._mesh.topology.nelements * order**2 > LARGEST:
+            if not points.size or mesh.topology.nelements * order**2 > LARGEST:
                 break
-            solver = solvers.get(order) or self._solver(order, self._mesh)
-            solvers[order] = solver
-            sweep = solver.sweep(self._materials.take(points), self._tolerance / REDUCTION)
-            self._rungs[points, number] = self.stiffness[points] = sweep.stiffness
+            solver = CellSolver(geometry, load, half, order, mesh)
+            sweep = solver.sweep(materials.take(points), tolerance / REDUCTION)
+            rungs[points, number] = self.stiffness[points] = sweep.stiffness
             self.reduction_error[points] = sweep.reduction_error / np.abs(sweep.stiffness)
             self.way[points], self.order[points] = sweep.way, order
             self.dof[points], self.coupling[points] = solver.dof, sweep.coupling
-            discretisation = estimate(self._rungs[points, start : number + 1], self._rate)
-            discretisation = np.maximum(discretisation, self._round_off[points])
+            discretisation = estimate(rungs[points, start : number + 1], load.rate)
+            discretisation = np.maximum(discretisation, round_off[points])
             self.error_estimate[points] = discretisation + self.reduction_error[points]
             now = time.perf_counter()
-            self.seconds[points] += (now - self._clock) / points.size
-            self._clock = now
+            self.seconds[points] += (now - clock) / points.size
+            clock = now
             solved = np.isfinite(self.stiffness[points])
-            points = points[solved & (self.error_estimate[points] > self._tolerance)]
-
-
-def _pioneers(materials: Materials) -> IndexArray:
-    """Points with the most and the least compressible matrix, with stiff and soft particles."""
-    ratio = materials.ratios.min(axis=1)
-    by_poisson = np.lexsort((ratio, materials.poisson_m))
-    by_ratio = np.lexsort((materials.poisson_m, ratio))
-    return np.unique([by_poisson[0], by_poisson[-1], by_ratio[0], by_ratio[-1]])
+            points = points[solved & (self.error_estimate[points] > tolerance)]
 
 
 def estimate(rungs: FloatArray, rate: float) -> FloatArray:
