@@ -28,7 +28,7 @@ SCENE = {
         "poisson_m": 0.3,
     },
     "sweep": {"gap": ["0.5 mm", "2 mm"], "modulus_ratio": [10, "rigid"]},
-    "models": ["fsi", "generatrix"],
+    "models": ["fsi", "slices"],
     "reference": {"bc": ["roller", "confined"], "tolerance": 1e-2},
     "load": ["normal", "torsion"],
 }
@@ -68,9 +68,9 @@ def test_first_load_in_the_root_others_in_groups(path):
     assert [load_name(found) for found in (root, torsion)] == ["normal", "torsion"]
     assert (root.attrs["load"], torsion.attrs["load"]) == ("normal", "torsion")
     assert torsion.gap.values.tolist() == root.gap.values.tolist()
-    assert model_names(root) == ["fsi", "generatrix", "fe", "fe_confined"]
+    assert model_names(root) == ["fsi", "slices", "fe", "fe_confined"]
     assert model_names(torsion) == ["fe"]
-    absent = torsion.sel(model=["fsi", "generatrix", "fe_confined"])
+    absent = torsion.sel(model=["fsi", "slices", "fe_confined"])
     assert (absent.status == Status.not_computed).all()
     assert absent.stiffness.isnull().all()
     assert (torsion.status.sel(model="fe") == Status.ok).all()
@@ -94,7 +94,7 @@ def test_values_are_those_of_evaluate(study, path):
 
 
 def test_accuracy_only_of_models_that_have_the_load(path):
-    assert set(accuracy_table(read_dataset(path)).model) == {"fsi", "generatrix"}
+    assert set(accuracy_table(read_dataset(path)).model) == {"fsi", "slices"}
     assert accuracy_table(read_dataset(path, "torsion")).empty
 
 
