@@ -16,7 +16,7 @@ from bondcell.models import MODELS
 from bondcell.models.model import Model
 
 REPEATS = 7
-POINTS = {"cementation": 2_000}
+POINTS = {"cementation": 2_000, "film": 64, "bounds": 64}
 CASES = ("equal", "wide gaps", "unequal radii", "all unequal", "soft particles")
 
 
