@@ -80,9 +80,9 @@ def specimen(
         On ``method``, ``loading``, ``walls``: ``energy``, ``displacement_norm``, ``error_estimate``
         (relative numerical error of the energy), ``status``, ``dof``, ``seconds``; with
         ``particle`` (1 to 18) ``rotation``, with ``component`` as well ``displacement``; with
-        ``mode`` ``mode_energy`` of the lattices. Of the solids also ``level_energy``, ``level_dof``,
-        ``level_seconds`` on ``per_gap`` and ``limit_energy``. What was not computed is NaN and
-        flagged.
+        ``mode`` ``mode_energy`` of the lattices. Of the solids also ``level_energy``,
+        ``level_dof``, ``level_seconds`` on ``per_gap`` and ``limit_energy``. What was not computed
+        is NaN and flagged.
 
     Raises
     ------
@@ -93,7 +93,7 @@ def specimen(
     --------
     >>> out = specimen(methods=["lattice_paper"], walls=["free"])
     >>> out.energy.squeeze().round(5).values
-    array([0.01446, 0.03154])
+    array([0.01449, 0.03154])
     """
     material = material or Material()
     _check({"methods": methods, "loadings": loadings, "walls": walls}, per_gap)

@@ -97,7 +97,7 @@ def wall_spring(young_matrix: float, distance: float, radius: float = given.RADI
     Examples
     --------
     >>> round(wall_spring(1.4e6, 17.25e-3))
-    20609
+    20600
     """
     if distance > 1e3 * radius:  # the difference of two equal numbers: its series instead
         return float(np.pi * young_matrix * radius**2 / distance)

@@ -43,7 +43,7 @@ def conjugate_gradients(
     Raises
     ------
     BondcellError
-        The tolerance is not met within `MOST_ITERATIONS`.
+        The tolerance is not met within `MOST_ITERATIONS`, or the matrix is not positive definite.
     """
     answer, residual = np.zeros_like(residual), residual.copy()
     direction = precondition(residual)
@@ -54,6 +54,8 @@ def conjugate_gradients(
             return answer, iteration
         pushed = apply(direction)
         curvature = _products(direction, pushed)
+        if (curvature[square > goal] <= 0).any():
+            raise BondcellError("the matrix is not positive definite: the state is unstable")
         length = np.where(square > goal, square / np.where(curvature > 0, curvature, 1.0), 0.0)
         answer += length * direction
         residual -= length * pushed

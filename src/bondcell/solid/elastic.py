@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.blocks import IndexArray
-from bondcell.fem.krylov import TOLERANCE, conjugate_gradients
+from bondcell.fem.krylov import TOLERANCE
 from bondcell.lattice.packing import Packing
+from bondcell.solid.mean_system import MeanSystem
 from bondcell.solid.multigrid import PMultigrid
 from bondcell.solid.particles import mean_motions
 from bondcell.solid.stiffness import Elastic, assemble
@@ -70,38 +71,15 @@ def solve_elastic(
     tolerance
         Error in the energy norm; the energy's error is its square.
 
-    Notes
-    -----
-    With the functionals M (``M^T u`` the prescribed means), lifts W with ``M^T W = 1`` and
-    ``P = 1 - W M^T``, the answer is ``u = W g + v`` with v in the range of P:
-    ``P^T A v = -P^T A W g`` by conjugate gradients, preconditioned by ``P B P^T``. The lifts are
-    coarse answers to forces on the particles, which costs little energy and keeps P small.
     """
     stiffness = assemble(mesh, matrix, particle)
     solver = PMultigrid(mesh, stiffness, held)
     free = solver.free[:, np.newaxis]
     functionals = mean_motions(mesh, packing)
     means = functionals[:, loaded, :2].reshape(len(free), -1) * free
-    lifts = solver(means)
-    lifts = lifts @ np.linalg.inv(means.T @ lifts)
-
-    def project(x: FloatArray) -> FloatArray:
-        return x - lifts @ (means.T @ x)
-
-    def project_forces(r: FloatArray) -> FloatArray:
-        return r - means @ (lifts.T @ r)
-
     given = np.tile(displacements, loaded.size).T
-    start = lifts @ given
-    residual = project_forces((stiffness.fine @ start) * free)
-    step, iterations = conjugate_gradients(
-        lambda x: project_forces((stiffness.fine @ x) * free),
-        lambda r: project(solver(r)),
-        -residual,
-        tolerance,
-    )
-    answer = start + step
-    forces = lifts.T @ ((stiffness.fine @ answer) * free)
+    system = MeanSystem(stiffness.fine, solver, means)
+    answer, forces, iterations = system.solve(given, tolerance=tolerance)
     cases = len(displacements)
     return ElasticSolution(
         field=answer.reshape(-1, 3, cases),

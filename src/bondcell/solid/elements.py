@@ -76,11 +76,11 @@ def physical_gradients(
         Gradients (elements, points, 10, 3) and weights (elements, points).
     """
     jacobian = jacobians(corners, reference)
-    inverse, determinant = _inverse(jacobian)
-    return reference @ inverse, determinant * weights
+    back, determinant = inverse(jacobian)
+    return reference @ back, determinant * weights
 
 
-def _inverse(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
+def inverse(matrix: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Inverses and determinants of 3x3 matrices, by cofactors."""
     rows = [matrix[..., k, :] for k in range(3)]
     columns = [np.cross(rows[(k + 1) % 3], rows[(k + 2) % 3]) for k in range(3)]

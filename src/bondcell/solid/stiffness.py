@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,6 +24,10 @@ CHUNK = 2000
 
 CURVED_ORDER, STRAIGHT_ORDER = 5, 2
 """Orders of quadrature; order 2 is exact on straight elements."""
+
+
+LocalMatrices = Callable[[IndexArray, FloatArray, FloatArray], FloatArray]
+"""Positions of elements, gradients and weights -> element matrices (elements, 30, 30)."""
 
 
 @dataclass(frozen=True)
@@ -93,9 +98,30 @@ def assemble_elements(
     mesh: Tets, elements: IndexArray, lam: FloatArray, mu: FloatArray
 ) -> Stiffness:
     """Assemble some elements with their Lame's constants [Pa], shape (elements,)."""
+
+    def local(own: IndexArray, gradients: FloatArray, volumes: FloatArray) -> FloatArray:
+        return element_matrices(gradients, volumes, lam[own], mu[own])
+
+    return assemble_local(mesh, elements, local)
+
+
+def assemble_local(mesh: Tets, elements: IndexArray, local: LocalMatrices) -> Stiffness:
+    """Assemble element matrices of any origin, fine and coarse."""
     nodes = mesh.nodes[elements]
     fine = BlockAssembler(nodes, len(mesh.points), 3)
     coarse = BlockAssembler(nodes[:, :4], mesh.corners, 3)
+    for own, gradients, volumes in chunks(mesh, elements):
+        matrices = local(own, gradients, volumes)
+        fine.add(own, matrices)
+        coarse.add(own, coarsened(matrices))
+    return Stiffness(fine.matrix(), coarse.matrix())
+
+
+def chunks(mesh: Tets, elements: IndexArray) -> Iterator[tuple[IndexArray, FloatArray, FloatArray]]:
+    """Some elements at a time: where they are in ``elements``, gradients and weights there.
+
+    Gradients have the shape (chunk, points, 10, 3), weights (chunk, points).
+    """
     curved = mesh.is_curved[elements]
     for group, order in (
         (np.flatnonzero(curved), CURVED_ORDER),
@@ -105,11 +131,8 @@ def assemble_elements(
         reference = shape_gradients(points)
         for start in range(0, group.size, CHUNK):
             own = group[start : start + CHUNK]
-            gradients, volumes = physical_gradients(mesh.points[nodes[own]], reference, weights)
-            local = element_matrices(gradients, volumes, lam[own], mu[own])
-            fine.add(own, local)
-            coarse.add(own, coarsened(local))
-    return Stiffness(fine.matrix(), coarse.matrix())
+            corners = mesh.points[mesh.nodes[elements[own]]]
+            yield own, *physical_gradients(corners, reference, weights)
 
 
 def coarsened(local: FloatArray) -> FloatArray:
