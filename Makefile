@@ -10,6 +10,8 @@ CORES ?= all
 # Many small systems: threads inside a process only get into each other's way.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# Tests share what a module prepares, so a file stays with one worker.
+PARALLEL ?= -n auto --dist loadfile
 # Rules may call the environment's commands by name.
 WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
 
@@ -26,11 +28,11 @@ study: setup ## run the default study to results/report.html
 
 test: lint ## lint, types and all tests but the slow ones
 	@sh scripts/system_deps.sh --optional
-	$(RUN) pytest -m "not slow"
+	$(RUN) pytest $(PARALLEL) -m "not slow"
 
 test-all: lint ## lint, types and every test
 	@sh scripts/system_deps.sh --optional
-	$(RUN) pytest
+	$(RUN) pytest $(PARALLEL)
 
 lint: setup ## ruff, snakefmt and mypy, nothing is changed
 	$(RUN) ruff check .

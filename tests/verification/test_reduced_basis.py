@@ -45,7 +45,9 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] * (name == "beam")) for name in CASES]
+)
 def test_error_is_small_and_below_its_bound(name):
     case = CASES[name]
     cell = operators(**case)
