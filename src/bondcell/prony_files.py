@@ -132,6 +132,7 @@ def _from_yaml(source: Path) -> tuple[Rows, Rows, dict[str, Any]]:
         for name, value in content.items()
         if name not in known
     ]
+    tables: dict[str, Any]
     if paired:
         columns: dict[str, Any] = {name: content[name] for name in PAIRED if name in content}
         lengths = {len(v) if isinstance(v, list) else -1 for v in columns.values()}

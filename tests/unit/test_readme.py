@@ -24,10 +24,14 @@ def test_scene(tmp_path):
     assert load_scene(path).reference is not None
 
 
-def test_python():
+def test_python(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     names: dict = {}
     exec(block("python"), names)
     model, reference = names["out"], names["reference"]
     assert model.stiffness.dims == reference.stiffness.dims == ("gap",)
     assert np.all(model.stiffness < reference.stiffness)
     assert np.all(reference.status == 0)
+    assert np.all(names["curve"].stiffness.diff("time") < 0)
+    assert np.all(names["few"].reduction_error < 1e-3)
+    assert (tmp_path / "results" / "bond.csv").is_file()
