@@ -10,6 +10,7 @@ from skfem import MeshTet2
 
 from bondcell.errors import InputError
 from bondcell.fem import tet_stiffness
+from bondcell.fem.krylov import conjugate_gradients
 from bondcell.lattice.packing import packing
 from bondcell.lattice.rigid_modes import rigid_modes
 from bondcell.solid.elastic import solve_elastic
@@ -22,8 +23,8 @@ from bondcell.solid.elements import (
     shape_gradients,
     shape_values,
 )
-from bondcell.fem.krylov import conjugate_gradients
 from bondcell.solid.memory import check_memory
+from bondcell.solid.moduli import elastic_of, moduli_family
 from bondcell.solid.multigrid import PMultigrid
 from bondcell.solid.particles import mean_motions, rigid_motions
 from bondcell.solid.rigid import condense
@@ -268,3 +269,18 @@ def test_inverted_element_is_refused():
 
     with pytest.raises(BondcellError, match="inside out"):
         second_order(inner, cells, np.array([0, MATRIX]), ball)
+
+
+def test_family_of_moduli_meets_solutions_it_has_not_seen():
+    family = moduli_family(
+        mesh(), three(), supports(mesh()), np.array([0.6, 0.2, 0.06, 0.02]), 1e-7
+    )
+    for ratio in (0.6, 0.25, 0.05):
+        own = elastic_of(1.7, 1.7 * ratio)
+        direct = condense(mesh(), three(), own, supports(mesh()), tolerance=1e-7).stiffness
+        found = family.at(1.7, 1.7 * ratio).stiffness
+        np.testing.assert_allclose(found, direct, atol=3e-4 * direct.max())
+        assert np.linalg.eigvalsh(found - direct).min() > -1e-8 * direct.max()
+    np.testing.assert_allclose(
+        family.at(2.0, 1.2).stiffness, 2 * family.at(1.0, 0.6).stiffness, rtol=1e-9, atol=1e-12
+    )
