@@ -119,7 +119,12 @@ def test_other_loads_have_a_group_each_and_the_file_is_a_tree(workspace):
         assert set(tree.children) == {"convergence", "torsion"}
     table = pd.read_csv(workspace / "results/full/stability.csv")
     assert table["load"].value_counts().to_dict() == {"normal": 8, "torsion": 4}
-    assert set(pd.read_csv(workspace / "results/full/accuracy.csv")["load"]) == {"normal"}
+    accuracy = pd.read_csv(workspace / "results/full/accuracy.csv")
+    assert set(zip(accuracy["load"], accuracy["model"], strict=True)) == {
+        ("normal", "fsi"),
+        ("normal", "generatrix"),
+        ("torsion", "generatrix"),
+    }
 
 
 def test_every_variable_is_described(workspace):
