@@ -24,9 +24,9 @@ def test_ends_are_the_elastic_specimens():
     for material, at in ((base, 0), (relaxed, -1)):
         elastic = specimen(["lattice_fsi"], walls=["free"], material=material)
         expected = elastic.energy.squeeze().values
-        np.testing.assert_allclose(data.energy[0, :, at], expected, rtol=1e-6)
+        np.testing.assert_allclose(data.energy[0, :, at], expected, rtol=1e-5)
     assert (data.reaction.diff("time") < 0).all()
-    assert (data.fit_error < 1e-6).all()
+    assert (data.fit_error < 1e-5).all()
 
 
 def test_constant_poisson_is_the_modulus_itself():
