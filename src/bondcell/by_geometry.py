@@ -86,8 +86,7 @@ def solve_points(
     **options
         ``bc`` (of the normal load) and ``tolerance`` of the solver.
     """
-    _check_condition(load, options)
-    _check_tolerance(options)
+    check_options(load, options)
     points = cell.radius_i.size
     results = PointResults.empty(points)
     details = {name: results.detail(name) for name in detail_names(load)}
@@ -111,6 +110,12 @@ def solve_points(
         if progress:
             progress(done, points)
     return results
+
+
+def check_options(load: str, options: Mapping[str, Any]) -> None:
+    """Refuse a boundary condition or a tolerance that the reference does not have."""
+    _check_condition(load, options)
+    _check_tolerance(options)
 
 
 def _check_condition(load: str, options: Mapping[str, Any]) -> None:

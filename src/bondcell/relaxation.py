@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import time as clock
+import warnings
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
-from bondcell.by_geometry import geometry_groups
+from bondcell.by_geometry import check_options, geometry_groups
 from bondcell.cell import Cell, FloatArray
-from bondcell.errors import InputError, Violation
+from bondcell.errors import InputError, MissingLibrary, Violation
 from bondcell.evaluate import checked_model
 from bondcell.inputs import cell_from_study
 from bondcell.models.asked import ask
@@ -24,6 +25,9 @@ from bondcell.prony.conventions import Relaxing, absolute_moduli
 from bondcell.prony.prony import Prony
 from bondcell.reference_options import DEFAULT_TOLERANCE
 from bondcell.status import Status, cf_flag_attributes
+
+if TYPE_CHECKING:
+    from bondcell.fem.relaxation_pencil import RelaxingReference
 
 TIME = {"units": "s", "long_name": "time since the step"}
 FREQUENCY = {"units": "rad s-1", "long_name": "angular frequency"}
@@ -326,25 +330,41 @@ def _solve_reference(question: _Question) -> _Answer:
         raise InputError([Violation("convention", "separate", allowed)])
     bc = question.options.get("bc", "roller")
     tolerance = question.options.get("tolerance", DEFAULT_TOLERANCE)
-    count = matrix.cell.radius_i.size
-    found: dict[int, Any] = {}
+    check_options(question.load, question.options)
+    answers: list[RelaxingReference | None] = [None] * matrix.cell.radius_i.size
     for group in geometry_groups(matrix.cell):
         for point in group.tolist():
             own = Relaxing(matrix.prony, matrix.convention, matrix.cell.take([point]))
-            found[point] = relax(own, question.load, bc, tolerance)
-    answers = [found[point] for point in range(count)]
-    width = max(answer.series.count for answer in answers)
-    strengths, times = np.zeros((count, width)), np.ones((count, width))
-    for point, answer in enumerate(answers):
-        strengths[point, : answer.series.count] = answer.series.strengths
-        times[point, : answer.series.count] = answer.series.times
-    return _Answer(
-        Chain(np.array([float(a.series.equilibrium) for a in answers]), strengths, times),
-        np.array([a.error_estimate for a in answers]),
-        np.array([a.status for a in answers], dtype=np.int8),
-        np.array([a.dof for a in answers], dtype=np.int64),
-        np.array([a.seconds for a in answers]),
+            try:
+                answers[point] = relax(own, question.load, bc, tolerance)
+            except (InputError, MissingLibrary):
+                raise
+            except Exception as error:  # one point must not lose the sweep
+                line = f"solver_failed: point {point}: {type(error).__name__}: {error}"
+                warnings.warn(line, RuntimeWarning, stacklevel=4)
+    return _collected(answers)
+
+
+def _collected(answers: list[RelaxingReference | None]) -> _Answer:
+    count = len(answers)
+    width = max((answer.series.count for answer in answers if answer), default=0)
+    result = _Answer(
+        Chain(np.full(count, np.nan), np.zeros((count, width)), np.ones((count, width))),
+        np.full(count, np.nan),
+        np.full(count, Status.solver_failed, dtype=np.int8),
+        np.zeros(count, dtype=np.int64),
+        np.full(count, np.nan),
     )
+    for point, answer in enumerate(answers):
+        if answer is None:
+            continue
+        own = answer.series
+        result.series.equilibrium[point] = own.equilibrium
+        result.series.strengths[point, : own.count] = own.strengths
+        result.series.times[point, : own.count] = own.times
+        result.error[point], result.status[point] = answer.error_estimate, answer.status
+        result.dof[point], result.seconds[point] = answer.dof, answer.seconds
+    return result
 
 
 def _stiffness_attributes(load: str, name: str) -> dict[str, str]:

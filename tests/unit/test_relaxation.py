@@ -158,6 +158,31 @@ def test_reference_relaxes_between_its_elastic_ends():
     np.testing.assert_allclose(series.K_inf, curve.stiffness[2], rtol=1e-14)
 
 
+def test_a_point_that_fails_costs_itself_only(monkeypatch):
+    from bondcell.fem import relaxation_pencil
+
+    relax = relaxation_pencil.relax
+
+    def fails_at_narrow_gaps(matrix, *options):
+        if matrix.cell.gap[0] < 2e-4:
+            raise np.linalg.LinAlgError("singular")
+        return relax(matrix, *options)
+
+    monkeypatch.setattr(relaxation_pencil, "relax", fails_at_narrow_gaps)
+    with pytest.warns(RuntimeWarning, match="solver_failed: point 0: LinAlgError: singular"):
+        out = bondcell.relaxation(study(), PRONY, [0.0, 1.0], "fe")
+    assert (out.status.isel(gap=0) == Status.solver_failed).all()
+    assert np.isnan(out.stiffness.isel(gap=0)).all()
+    assert np.isfinite(out.stiffness.isel(gap=1)).all()
+
+
+def test_options_of_the_reference_are_checked():
+    with pytest.raises(bondcell.InputError, match="tolerance"):
+        bondcell.relaxation(study(), PRONY, [0.0], "fe", tolerance=-1.0)
+    with pytest.raises(UnsupportedLoad, match="bc"):
+        bondcell.relaxation(study(), PRONY, [0.0], "fe", bc="glued")
+
+
 def test_import_is_light():
     import subprocess
     import sys
