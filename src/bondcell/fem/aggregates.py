@@ -14,7 +14,7 @@ from bondcell.fem.smoother import Chebyshev
 COARSEST = 100
 """Nodes of the coarsest level, which is inverted densely."""
 
-WEAK = 0.08
+WEAK = 0.03
 """Nodes coupled by less do not share an aggregate: the two sides of an interface."""
 
 
