@@ -2,76 +2,24 @@
 
 from __future__ import annotations
 
-import time as clock
-import warnings
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bondcell.by_geometry import check_options, geometry_groups
-from bondcell.cell import Cell, FloatArray
-from bondcell.errors import InputError, MissingLibrary, Violation
+from bondcell.cell import FloatArray
+from bondcell.errors import InputError, Violation
 from bondcell.evaluate import checked_model
 from bondcell.inputs import cell_from_study
-from bondcell.models.asked import ask
-from bondcell.models.model import Model
 from bondcell.outputs import STIFFNESS_UNITS
-from bondcell.prony.bond_series import bond_series
-from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing, absolute_moduli
 from bondcell.prony.prony import Prony
-from bondcell.reference_options import DEFAULT_TOLERANCE
-from bondcell.status import Status, cf_flag_attributes
-
-if TYPE_CHECKING:
-    from bondcell.fem.relaxation_pencil import RelaxingReference
+from bondcell.relaxation_points import Answer, Question, flags, flags_for_all_times, solve, states
+from bondcell.status import cf_flag_attributes
 
 TIME = {"units": "s", "long_name": "time since the step"}
 FREQUENCY = {"units": "rad s-1", "long_name": "angular frequency"}
-
-
-@dataclass(frozen=True)
-class _Answer:
-    """Series of all points and what is known of them, arrays of shape (points,)."""
-
-    series: Chain
-    error: FloatArray
-    status: NDArray[np.int8]
-    dof: NDArray[np.int64]
-    seconds: FloatArray
-
-
-@dataclass(frozen=True)
-class _Question:
-    """A study with its matrix relaxing."""
-
-    study: xr.Dataset
-    model: Model
-    load: str
-    options: dict[str, Any]
-    matrix: Relaxing
-    shape: tuple[int, ...]
-    dims: tuple[str, ...]
-
-    @property
-    def coords(self) -> dict[Any, Any]:
-        """Coordinates of the study that belong to the result."""
-        own = set(self.dims)
-        return {n: c for n, c in self.study.coords.items() if set(c.dims) <= own}
-
-    @property
-    def attributes(self) -> dict[str, Any]:
-        """Attributes of every result."""
-        return {
-            "model": self.model.name,
-            "load": self.load,
-            "convention": self.matrix.convention,
-            "relative_to": self.matrix.prony.relative_to,
-            **self.options,
-        }
 
 
 def relaxation(
@@ -127,10 +75,10 @@ def relaxation(
     """
     question = _ask(study, prony, model, convention, load, options)
     points = _checked_axis("time", time, allow_end=True)
-    answer = _solve(question)
+    answer = solve(question)
     shape = (points.size, *question.shape)
     stiffness = answer.series.relaxation(points).reshape(shape)
-    status = np.array([_flags(question, answer, state) for state in _states(question, points)])
+    status = np.array([flags(question, answer, state) for state in states(question, points)])
     dims = ("time", *question.dims)
     variables = {
         "stiffness": (dims, stiffness, _stiffness_attributes(load, "stiffness after a step")),
@@ -180,7 +128,7 @@ def relaxation_series(
     array([  1.016, 100.823])
     """
     question = _ask(study, prony, model, convention, load, options)
-    answer = _solve(question)
+    answer = solve(question)
     dims, shape = question.dims, question.shape
     series = answer.series
     used = (series.strengths > 0).sum(axis=1).max(initial=0)
@@ -196,7 +144,11 @@ def relaxation_series(
         "K_inf": (dims, series.equilibrium.reshape(shape), final),
         "K_k": ((*dims, "term"), strengths.reshape(*shape, used), part),
         "tau_k": ((*dims, "term"), times.reshape(*shape, used), tau),
-        "status": (dims, _ever(question, answer).reshape(shape), cf_flag_attributes()),
+        "status": (
+            dims,
+            flags_for_all_times(question, answer).reshape(shape),
+            cf_flag_attributes(),
+        ),
         **_point_variables(question, answer),
     }
     return xr.Dataset(variables, question.coords, question.attributes)
@@ -228,13 +180,13 @@ def dynamic_stiffness(
     """
     question = _ask(study, prony, model, convention, load, options)
     points = _checked_axis("frequency", frequency, allow_end=False)
-    answer = _solve(question)
+    answer = solve(question)
     value = answer.series.dynamic(points).reshape(points.size, *question.shape)
     with np.errstate(divide="ignore", invalid="ignore"):
         factor = np.where(value.real > 0, value.imag / value.real, np.inf)
     factor = np.where(np.isnan(value.real), np.nan, factor)
     dims = ("frequency", *question.dims)
-    status = _ever(question, answer).reshape(question.shape)
+    status = flags_for_all_times(question, answer).reshape(question.shape)
     variables = {
         "storage": (dims, value.real, _stiffness_attributes(load, "storage stiffness")),
         "loss": (dims, value.imag, _stiffness_attributes(load, "loss stiffness")),
@@ -253,7 +205,7 @@ def _ask(
     convention: str | None,
     load: str,
     options: dict[str, Any],
-) -> _Question:
+) -> Question:
     chosen = checked_model(model, load, options)
     if not isinstance(prony, Prony):
         raise InputError([Violation("prony", type(prony).__name__, "a bondcell.Prony")])
@@ -266,7 +218,7 @@ def _ask(
                 study = study.assign({name: (dims, value)})
     cell, dims = cell_from_study(study)
     matrix = Relaxing.of(cell.ravel(), prony, convention)
-    return _Question(study, chosen, load, dict(options), matrix, cell.shape, dims)
+    return Question(study, chosen, load, dict(options), matrix, cell.shape, dims)
 
 
 def _checked_axis(name: str, given: ArrayLike, allow_end: bool) -> FloatArray:
@@ -282,96 +234,11 @@ def _checked_axis(name: str, given: ArrayLike, allow_end: bool) -> FloatArray:
     return values
 
 
-def _solve(question: _Question) -> _Answer:
-    if question.model.is_reference:
-        return _solve_reference(question)
-    started = clock.perf_counter()
-    matrix, count = question.matrix, question.matrix.cell.radius_i.size
-    series, error = bond_series(question.model, question.load, matrix, **question.options)
-    springs, status = ask(question.model, question.load, matrix.cell, **question.options)
-    known = np.isfinite(series.instantaneous)
-    missing = ~known & (status < Status.limit_exceeded)
-    status = np.where(missing, Status.not_computed, status).astype(np.int8)
-    error = np.where(known, np.maximum(error, 0) + springs.relative_error, np.nan)
-    seconds = np.full(count, (clock.perf_counter() - started) / count)
-    return _Answer(series, error, status, np.zeros(count, dtype=np.int64), seconds)
-
-
-def _states(question: _Question, points: FloatArray) -> list[Cell | None]:
-    """The cells at each time, as far as a valid range may depend on it."""
-    if question.model.is_reference:
-        return [None] * points.size
-    return [*question.matrix.states(points)]
-
-
-def _flags(question: _Question, answer: _Answer, state: Cell | None) -> NDArray[np.int8]:
-    """Flags of all points when the matrix is in a state: as it relaxes a model's range may end."""
-    if state is None:
-        return answer.status
-    outside = ~np.broadcast_to(question.model.is_valid(state), answer.status.shape)
-    own = np.where(outside, Status.outside_valid_range, Status.ok)
-    free = answer.status <= Status.outside_valid_range
-    return np.where(free, own, answer.status).astype(np.int8)
-
-
-def _ever(question: _Question, answer: _Answer) -> NDArray[np.int8]:
-    """Flags that hold for all times: the worse of the first and the last."""
-    states = _states(question, np.array([0.0, np.inf]))
-    return np.max([_flags(question, answer, state) for state in states], axis=0)
-
-
-def _solve_reference(question: _Question) -> _Answer:
-    """Point by point, geometry by geometry, so that neighbours share their operators."""
-    from bondcell.fem.relaxation_pencil import relax
-
-    matrix = question.matrix
-    if matrix.convention == "separate":
-        allowed = "constant_bulk or constant_poisson for model 'fe'"
-        raise InputError([Violation("convention", "separate", allowed)])
-    bc = question.options.get("bc", "roller")
-    tolerance = question.options.get("tolerance", DEFAULT_TOLERANCE)
-    check_options(question.load, question.options)
-    answers: list[RelaxingReference | None] = [None] * matrix.cell.radius_i.size
-    for group in geometry_groups(matrix.cell):
-        for point in group.tolist():
-            own = Relaxing(matrix.prony, matrix.convention, matrix.cell.take([point]))
-            try:
-                answers[point] = relax(own, question.load, bc, tolerance)
-            except (InputError, MissingLibrary):
-                raise
-            except Exception as error:  # one point must not lose the sweep
-                line = f"solver_failed: point {point}: {type(error).__name__}: {error}"
-                warnings.warn(line, RuntimeWarning, stacklevel=4)
-    return _collected(answers)
-
-
-def _collected(answers: list[RelaxingReference | None]) -> _Answer:
-    count = len(answers)
-    width = max((answer.series.count for answer in answers if answer), default=0)
-    result = _Answer(
-        Chain(np.full(count, np.nan), np.zeros((count, width)), np.ones((count, width))),
-        np.full(count, np.nan),
-        np.full(count, Status.solver_failed, dtype=np.int8),
-        np.zeros(count, dtype=np.int64),
-        np.full(count, np.nan),
-    )
-    for point, answer in enumerate(answers):
-        if answer is None:
-            continue
-        own = answer.series
-        result.series.equilibrium[point] = own.equilibrium
-        result.series.strengths[point, : own.count] = own.strengths
-        result.series.times[point, : own.count] = own.times
-        result.error[point], result.status[point] = answer.error_estimate, answer.status
-        result.dof[point], result.seconds[point] = answer.dof, answer.seconds
-    return result
-
-
 def _stiffness_attributes(load: str, name: str) -> dict[str, str]:
     return {"units": STIFFNESS_UNITS[load], "long_name": f"{load} {name} of the bond"}
 
 
-def _point_variables(question: _Question, answer: _Answer) -> dict[str, Any]:
+def _point_variables(question: Question, answer: Answer) -> dict[str, Any]:
     error = {"units": "1", "long_name": "relative numerical error at any time"}
     dof = {"units": "1", "long_name": "degrees of freedom"}
     seconds = {"units": "s", "long_name": "wall time per point"}
