@@ -23,8 +23,9 @@ def elastic_of(bulk: float, shear: float) -> Elastic:
 
     Examples
     --------
-    >>> elastic_of(bulk=2.0, shear=1.2)
-    Elastic(young=3.0, poisson=0.25)
+    >>> found = elastic_of(bulk=2.0, shear=1.2)
+    >>> round(found.young, 12), round(found.poisson, 12)
+    (3.0, 0.25)
     """
     ratio = shear / bulk
     return Elastic(9 * shear / (3 + ratio), (3 - 2 * ratio) / (6 + 2 * ratio))
