@@ -1,5 +1,7 @@
 """The structured reference against independent values, limits, bounds and its own convergence."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -9,8 +11,8 @@ from bondcell.cell import Cell
 from bondcell.errors import UnsupportedLoad
 from bondcell.fem.cell_mesh import Grading
 from bondcell.fem.ladder import estimate
-from bondcell.fem.reference import solve
-from bondcell.fem.structured import solve_level
+from bondcell.fem.reference import STIFF_CUT, STIFF_RATIO, solve
+from bondcell.fem.structured import LOADS, solve_level
 from bondcell.models import MODELS
 from bondcell.status import Status
 
@@ -244,3 +246,16 @@ def test_confined_incompressible_cell_of_rigid_particles_has_no_stiffness():
 def test_unknown_supports_are_refused():
     with pytest.raises(UnsupportedLoad, match="glued"):
         solve(cell(), bc="glued")
+
+
+@pytest.mark.parametrize(("load", "bc"), [key for key in LOADS if key != ("normal", "confined")])
+@pytest.mark.parametrize("gap", [1e-3, 0.5])
+def test_cutting_the_cusp_early_costs_what_is_said(load, bc, gap):
+    entry = LOADS[load, bc]
+    early = replace(entry.grading, foot=STIFF_CUT, corner=0.0)
+    for poisson_m in (0.0, 0.49):
+        changes = {"gap": gap, "young_i": STIFF_RATIO, "young_m": 1.0, "poisson_m": poisson_m}
+        one = Cell.from_values(radius_i=1.0, poisson_i=0.25, **changes)
+        usual, cut = (solve_level(one, 8, bc, load, grading=g) for g in (None, early))
+        error = abs(cut.stiffness / usual.stiffness - 1)
+        assert entry.early_cut / 100 < error <= entry.early_cut
