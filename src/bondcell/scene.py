@@ -81,6 +81,11 @@ class Scene(Block):
         description="Whether to write stability.csv: every point of the reference with its error "
         "estimate, flag, cost and condition, worst first.",
     )
+    atlas: Flag = Field(
+        False,
+        description="Whether the sweep is an accuracy atlas: error by region, best models and error "
+        "against run time instead of curves. With the axes gap_ratio, modulus_ratio, poisson_m.",
+    )
     convergence: Convergence | None = Field(None, description="Convergence study; left out: none.")
 
     _name: str = PrivateAttr("scene")

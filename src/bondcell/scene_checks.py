@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 _NEUTRAL = {name: 0.0 if UNITS[name] == "1" else 1.0 for name in UNITS}
 """Stands in for what is missing or wrong, so that the rest can be checked."""
 
+ATLAS_AXES = ("gap_ratio", "modulus_ratio", "poisson_m")
+"""Axes that an accuracy atlas is drawn over."""
+
 _BASE = {"young_m": "young_i", "gap": "radius_i", "radius_j": "radius_i"}
 """Input set by a ratio -> the input the ratio refers to."""
 
@@ -85,7 +88,18 @@ def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Viol
         )
     if scene.stability and scene.reference is None and ("reference",) not in bad:
         yield Violation("stability", True, "true only with a reference")
+    yield from _atlas_violations(scene, bad)
     yield from _load_violations(scene)
+
+
+def _atlas_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
+    sources = {"models": scene.models, "reference": scene.reference, "sweep": scene.sweep}
+    if not scene.atlas or any((name,) in bad for name in sources):
+        return
+    axes = set(ATLAS_AXES) <= {*scene.axis_names, *(str(path[-1]) for path in bad)}
+    if not (axes and all(sources.values())):
+        words = f"models, a reference and the axes {', '.join(ATLAS_AXES)}"
+        yield Violation("atlas", True, f"true only with {words}")
 
 
 def _load_violations(scene: Scene) -> Iterator[Violation]:

@@ -381,5 +381,6 @@ def test_scene_keys_are_the_documented_ones():
         "loads",
         "contributions",
         "stability",
+        "atlas",
         "convergence",
     )
