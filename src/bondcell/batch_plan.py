@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from math import ceil, prod
 from typing import TYPE_CHECKING
 
-from bondcell.batches import ANALYTIC, REFERENCE, Batch
+from bondcell.batches import ANALYTIC, REFERENCE, RELAXATION, Batch
 from bondcell.cell import GEOMETRY
 from bondcell.result_names import all_variants, models_with
 
@@ -31,6 +31,12 @@ SECONDS_PER_GEOMETRY = 0.5
 SECONDS_PER_STATE = 0.015
 """Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
 
+SECONDS_PER_RELAXING_MODEL = 0.02
+"""Cost of one series of one model under one convention [s], some more of each point."""
+
+SECONDS_PER_RELAXING_STATE = 0.4
+"""Cost of the reference's reduced model of one point and convention [s]."""
+
 GEOMETRY_AXES = (*GEOMETRY, "gap_ratio", "radius_ratio")
 """Axes that change the mesh; along all others only the moduli change."""
 
@@ -49,7 +55,36 @@ def plan(scene: Scene) -> list[Batch]:
     for load in scene.loads:
         method = ANALYTIC if load == scene.load else f"{ANALYTIC}_{load}"
         batches += analytic_batches(scene.points, len(models_with(scene, load)), method)
-    return batches + reference_batches(sizes, all_variants(scene))
+    return batches + reference_batches(sizes, all_variants(scene)) + relaxation_batches(scene)
+
+
+def relaxation_batches(scene: Scene) -> list[Batch]:
+    """Batches of relaxation, of models and of the reference under each load; a geometry is whole.
+
+    Parameters
+    ----------
+    scene
+        Without its prony block there are none.
+    """
+    block = scene.prony
+    if block is None:
+        return []
+    axes = {name: len(values) for name, values in scene.axes.items()}
+    geometries = prod(size for name, size in axes.items() if name in GEOMETRY_AXES)
+    series = len(block.cases()) * len(block.conventions)
+    ends = len({round(case.relaxing_share, 12) for case in block.cases()})
+    found = []
+    for load in scene.loads:
+        models = len(models_with(scene, load))
+        if models:
+            one = models * SECONDS_PER_RELAXING_MODEL * series
+            seconds = one * (1 + scene.points / 50) * (1 + block.checks / 10)
+            found += _split(f"{RELAXATION}_models_{load}", geometries, seconds)
+        if scene.reference is not None:
+            states = scene.points * ends * len(block.conventions)
+            seconds = states * SECONDS_PER_RELAXING_STATE * (1 + block.checks / 10)
+            found += _split(f"{RELAXATION}_fe_{load}", geometries, seconds)
+    return found
 
 
 def analytic_batches(points: int, models: int, method: str = ANALYTIC) -> list[Batch]:

@@ -20,6 +20,10 @@ REFERENCE = "fe"
 """Method of a batch of the reference, followed by boundary condition or load."""
 
 
+RELAXATION = "relaxation"
+"""Method of a batch of relaxation, followed by ``models`` or ``fe`` and the load."""
+
+
 @dataclass(frozen=True)
 class Batch:
     """Every `parts`-th item of a scene's work, beginning with item `part` - 1.

@@ -13,6 +13,7 @@ from bondcell import provenance
 from bondcell.analytic_batch import compute_analytic
 from bondcell.batch_files import read_batch
 from bondcell.batches import ANALYTIC, REFERENCE, Batch
+from bondcell.collect_relaxation import collect_relaxation
 from bondcell.merge import merge
 from bondcell.outputs import DETAILS
 from bondcell.result_names import models_with, reference_variants, result_names
@@ -28,6 +29,7 @@ def collect(
     analytic: Sequence[Path],
     reference: Sequence[Path],
     load: str | None = None,
+    relaxation: Sequence[Path] = (),
 ) -> xr.Dataset:
     """Results at the points of a scene under one load with their provenance.
 
@@ -44,6 +46,8 @@ def collect(
     load
         One of its loads, the first by default. Every load has the same models: one that does not
         cover the load is NaN, flagged ``not_computed``.
+    relaxation
+        Files of its relaxation batches, if its matrix relaxes.
 
     Raises
     ------
@@ -62,24 +66,31 @@ def collect(
     if models and not any(set(models) & set(batch["model"].values) for batch in batches):
         batches.append(compute_analytic(study, Batch(ANALYTIC), models, load, scene.contributions))
     merged = merge(study, batches, labels(scene, load))
-    return _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
+    result = _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
+    if relaxation:
+        result = result.merge(collect_relaxation(scene, study, relaxation, load))
+    return result
 
 
 def collect_other_loads(
-    scene: Scene, study: xr.Dataset | None, analytic: Sequence[Path], reference: Sequence[Path]
+    scene: Scene,
+    study: xr.Dataset | None,
+    analytic: Sequence[Path],
+    reference: Sequence[Path],
+    relaxation: Sequence[Path] = (),
 ) -> dict[str, xr.Dataset]:
     """Results under every load but the first, as groups of the scene's file: axes and outputs.
 
     Parameters
     ----------
-    scene, study, analytic, reference
+    scene, study, analytic, reference, relaxation
         As in `collect`.
     """
     if study is None:
         return {}
     inputs = list(study.data_vars)
     return {
-        load: collect(scene, study, analytic, reference, load).drop_vars(inputs)
+        load: collect(scene, study, analytic, reference, load, relaxation).drop_vars(inputs)
         for load in scene.loads[1:]
     }
 

@@ -25,10 +25,10 @@ UNIT = rf"(?:%|{_FACTOR}(?:\s{{0,3}}[/ ]\s{{0,3}}{_FACTOR}){{0,2}})"
 _QUANTITY = re.compile(rf"\s*({NUMBER})\s*({UNIT})?\s*", re.ASCII)
 _RIGID = re.compile(r"\s*(?:rigid|\+?\.?inf)\s*", re.IGNORECASE)
 
-EXAMPLES = {"m": "0.5 mm", "Pa": "1.4 MPa", "1": "0.46"}
+EXAMPLES = {"m": "0.5 mm", "Pa": "1.4 MPa", "s": "1 ms", "1": "0.46"}
 """How a value of each supported SI unit may be written."""
 
-_KINDS = {"m": "a length", "Pa": "a pressure", "1": "a number without unit"}
+_KINDS = {"m": "a length", "Pa": "a pressure", "s": "a time", "1": "a number without unit"}
 
 
 class UnitsWarning(UserWarning):
@@ -58,8 +58,8 @@ def parse_quantity(value: Any, unit: str = "1", *, allow_infinite: bool = False)
         A number (SI), a number as text (``"1e-3"``, SI), or ``"<number> <unit>"``. Never evaluated:
         an expression is refused.
     unit
-        SI unit of the result: ``"m"``, ``"Pa"`` or ``"1"``. A dimensionless value may be given in
-        per cent.
+        SI unit of the result: ``"m"``, ``"Pa"``, ``"s"`` or ``"1"``. A dimensionless value may be
+        given in per cent.
     allow_infinite
         Whether an infinite number, also written ``rigid``, is accepted.
 

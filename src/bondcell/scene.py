@@ -13,8 +13,9 @@ from pydantic import AfterValidator, Field, PrivateAttr, ValidationError
 from bondcell import scene_checks, scene_digests
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import SceneError, Violation
+from bondcell.materials import FOLDER
 from bondcell.quantities import UnitsWarning
-from bondcell.scene_blocks import Case, CellInputs, Convergence, Reference
+from bondcell.scene_blocks import CellInputs, Convergence, Reference
 from bondcell.scene_fields import (
     NAME,
     NAME_RULE,
@@ -24,8 +25,11 @@ from bondcell.scene_fields import (
     distinct,
     text_up_to,
 )
+from bondcell.scene_keys import block_of
+from bondcell.scene_materials import read_materials
 from bondcell.scene_names import LoadNames, ModelName
-from bondcell.scene_sweep import Range, Sweep
+from bondcell.scene_prony import PronyBlock
+from bondcell.scene_sweep import DERIVED, Sweep
 from bondcell.scene_violations import KeyPath, as_given, found_violations, null_violations, without
 from bondcell.yaml_loading import load_mapping
 
@@ -87,6 +91,9 @@ class Scene(Block):
         "against run time instead of curves. With the axes gap_ratio, modulus_ratio, poisson_m.",
     )
     convergence: Convergence | None = Field(None, description="Convergence study; left out: none.")
+    prony: PronyBlock | None = Field(
+        None, description="A matrix that relaxes; left out: there is no time."
+    )
 
     _name: str = PrivateAttr("scene")
     _given: str = PrivateAttr("{}")
@@ -110,6 +117,11 @@ class Scene(Block):
     def axis_names(self) -> tuple[str, ...]:
         """Names of the swept axes in the order of the file."""
         return self.sweep.names if self.sweep else ()
+
+    @property
+    def swept_inputs(self) -> tuple[str, ...]:
+        """Inputs that the axes set, those behind ratios included."""
+        return tuple(dict.fromkeys(DERIVED.get(name, name) for name in self.axis_names))
 
     @property
     def axes(self) -> dict[str, FloatArray]:
@@ -180,6 +192,16 @@ class Scene(Block):
         return scene_digests.reference(self)
 
     @property
+    def relaxation_digest(self) -> str:
+        """Identity of what the relaxation of all bonds depends on."""
+        return scene_digests.relaxation(self)
+
+    @property
+    def methods_digest(self) -> str:
+        """Identity of what the comparison of methods in time depends on."""
+        return scene_digests.methods(self)
+
+    @property
     def sweep_digest(self) -> str:
         """Identity of what all results at the points depend on; titles are not part of it."""
         return scene_digests.sweep(self)
@@ -214,13 +236,19 @@ def load_scene(path: str | Path) -> Scene:
         A value is so large or small that its unit was probably forgotten.
     """
     source = str(path)
-    scene = parse_scene(load_mapping(path, SceneError), name=Path(path).stem, source=source)
+    content, folder = load_mapping(path, SceneError), Path(path).parent / FOLDER
+    scene = parse_scene(content, name=Path(path).stem, source=source, materials=folder)
     for warning in scene_checks.unit_warnings(scene):
         warnings.warn(f"{source}: {warning}", UnitsWarning, stacklevel=2)
     return scene
 
 
-def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None = None) -> Scene:
+def parse_scene(
+    data: Mapping[str, Any],
+    name: str = "scene",
+    source: str | None = None,
+    materials: Path | None = None,
+) -> Scene:
     """Check the content of a scene file.
 
     Parameters
@@ -231,6 +259,8 @@ def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None
         The scene's name.
     source
         Where the content came from, for messages.
+    materials
+        Folder of the named materials; None: there are none.
 
     Raises
     ------
@@ -272,6 +302,7 @@ def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None
         bad |= {_prunable(path) for path, _ in found}
         scene = _salvage(data, set(bad))
     if scene is not None:
+        violations += read_materials(scene.prony, materials)
         joint = scene_checks.joint_violations(scene, bad)
         violations += [as_given(violation, data) for violation in joint]
     unique = {violation.field: violation for violation in reversed(violations)}
@@ -285,17 +316,7 @@ def parse_scene(data: Mapping[str, Any], name: str = "scene", source: str | None
 
 def known_keys(path: KeyPath) -> tuple[str, ...]:
     """Keys that the block at a path may have."""
-    blocks: dict[str, type[Block]] = {
-        "cell": CellInputs,
-        "reference": Reference,
-        "convergence": Convergence,
-        "sweep": Sweep,
-    }
-    block: type[Block] = Scene
-    if path:
-        block = blocks[str(path[0])]
-    if len(path) > 1:
-        block = Range if path[0] == "sweep" else Case
+    block = block_of(path) or Scene
     return tuple(field.alias or name for name, field in block.model_fields.items())
 
 

@@ -12,6 +12,7 @@ from bondcell.errors import InputError, Violation
 from bondcell.likely_units import unlikely
 from bondcell.result_names import models_with
 from bondcell.scene_names import covering
+from bondcell.scene_prony_checks import prony_violations
 from bondcell.scene_sweep import DERIVED, MOST_POINTS, resolve_inputs
 from bondcell.scene_violations import KeyPath
 
@@ -59,6 +60,7 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
     else:
         yield from _axis_violations(given, scene.axes)
     yield from _case_violations(scene, given, wrong, incomplete)
+    yield from prony_violations(scene, bad)
 
 
 def unit_warnings(scene: Scene) -> list[str]:

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 def everything(scene: Scene) -> str:
     """Digest of the parsed content: ``0.5 mm`` is ``5e-4``, the order of the axes counts."""
     content = scene.model_dump(exclude_none=True)
+    if scene.prony:
+        content["prony"] = [content["prony"], _prony_content(scene)]
     if scene.sweep:
         content["sweep"] = [(name, content["sweep"][name]) for name in scene.axes]
     if scene.convergence:
@@ -67,6 +69,32 @@ def convergence(scene: Scene) -> str:
     cases = [(name, case.load, case.bc, _cell(case.cell)) for name, case in scene.cases().items()]
     ladders = [block.orders, block.gradings, block.sizes, block.basis_order]
     return _digest([cases, ladders, block.repeats, scene.models])
+
+
+def relaxation(scene: Scene) -> str:
+    """Digest of what the relaxation of all bonds depends on."""
+    return _digest([sweep(scene), _prony_content(scene)])
+
+
+def methods(scene: Scene) -> str:
+    """Digest of what the comparison of methods in time depends on."""
+    if scene.prony is None or scene.prony.methods is None:
+        return _digest(None)
+    cell, block = scene.cell.given(), scene.prony.methods.model_dump()
+    return _digest([cell, block, scene.load, list(scene.fe_names.values()), _prony_content(scene)])
+
+
+def _prony_content(scene: Scene) -> Any:
+    block = scene.prony
+    if block is None:
+        return None
+    cases = [case.model_dump(mode="json") for case in block.cases()]
+    axes = [_array(block.times.values()), _array(np.asarray(block.dynamic_frequencies))]
+    shifts = [block.known_material(name).model_dump(include=_SHIFTS) for name in block.materials]
+    return [cases, block.conventions, axes, shifts, block.checks]
+
+
+_SHIFTS = {"temperature", "wlf", "arrhenius"}
 
 
 def _cell(cell: Cell) -> dict[str, Any]:

@@ -6,6 +6,7 @@ import json
 import sys
 from pathlib import Path
 
+from bondcell.materials import material_json_schema
 from bondcell.scene import scene_json_schema
 from bondcell.study_list import study_list_json_schema
 
@@ -14,6 +15,7 @@ def schema_texts() -> dict[str, str]:
     """File name -> content of every generated schema."""
     schemas = {
         "scene.schema.json": scene_json_schema(),
+        "material.schema.json": material_json_schema(),
         "study.schema.json": study_list_json_schema(),
     }
     return {

@@ -312,7 +312,7 @@ def test_schemas_are_current(tmp_path):
     for name, text in schema_texts().items():
         stored = (PARAMS / name).read_text(encoding="utf-8")
         assert stored == text, "run: python -m bondcell.scene_schema"
-    assert len(write_schemas(tmp_path)) == 2
+    assert len(write_schemas(tmp_path)) == 3
     assert write_schemas(tmp_path) == []
 
 
@@ -383,4 +383,5 @@ def test_scene_keys_are_the_documented_ones():
         "stability",
         "atlas",
         "convergence",
+        "prony",
     )

@@ -5,6 +5,8 @@ rule collect:
         sources=sources("collect.py"),
         analytic=lambda wildcards: batch_files(scene_of(wildcards), "analytic"),
         reference=lambda wildcards: batch_files(scene_of(wildcards), "fe"),
+        relaxation=lambda wildcards: batch_files(scene_of(wildcards), "relaxation"),
+        methods=lambda wildcards: method_files(scene_of(wildcards)),
         convergence=lambda wildcards: convergence_files(scene_of(wildcards)),
     output:
         "results/{scene}/study.nc",

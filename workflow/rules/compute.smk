@@ -31,7 +31,51 @@ rule reference:
         "../scripts/reference.py"
 
 
+rule relaxation_models:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("relaxation_models.py"),
+    output:
+        "results/{scene}/batches/relaxation_models_{load}_{part}.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
+    message:
+        "{wildcards.scene}: relaxation by models ({wildcards.load}), batch {wildcards.part}"
+    script:
+        "../scripts/relaxation_models.py"
+
+
+rule relaxation_fe:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("relaxation_fe.py"),
+    output:
+        "results/{scene}/batches/relaxation_fe_{load}_{part}.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
+    message:
+        "{wildcards.scene}: relaxation by finite elements ({wildcards.load}), batch {wildcards.part}"
+    script:
+        "../scripts/relaxation_fe.py"
+
+
 WHOLE_MACHINE = 1024  # more than there are: Snakemake scales it down to all cores
+
+
+rule relaxation_methods:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        sources=sources("relaxation_methods.py"),
+    output:
+        "results/{scene}/batches/relaxation_methods.nc",
+    # As below.
+    threads: WHOLE_MACHINE
+    params:
+        digest=lambda wildcards: scene_of(wildcards).methods_digest,
+    message:
+        "{wildcards.scene}: methods in time"
+    script:
+        "../scripts/relaxation_methods.py"
 
 
 rule convergence:

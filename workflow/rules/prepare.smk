@@ -12,6 +12,7 @@ from bondcell.sources import PACKAGE, script_sources
 wildcard_constraints:
     scene="[a-z][a-z0-9_]*",
     bc="[a-z]+",
+    load="[a-z]+",
     part=r"\d+of\d+",
 
 
@@ -59,16 +60,34 @@ def study_scenes():
 
 
 def batch_files(scene, method):
-    """Files of the batches of a scene by a method (analytic, fe)."""
+    """Files of the batches of a scene by a method (analytic, fe, relaxation)."""
     from bondcell.batch_plan import plan
 
-    names = [batch.name for batch in plan(scene) if batch.method.startswith(method)]
+    names = [batch.name for batch in plan(scene) if batch.method.split("_")[0] == method]
     return [f"results/{scene.name}/batches/{name}.nc" for name in names]
 
 
 def convergence_files(scene):
     """File of a scene's convergence study, if it has one."""
     return [f"results/{scene.name}/batches/convergence.nc"] if scene.convergence else []
+
+
+def method_files(scene):
+    """File of a scene's comparison of methods in time, if it has one."""
+    wanted = scene.prony and scene.prony.methods
+    return [f"results/{scene.name}/batches/relaxation_methods.nc"] if wanted else []
+
+
+def ladder_groups(scene):
+    """Groups of a scene's file that convergence.csv tells of."""
+    return [
+        group
+        for group, files in (
+            ("convergence", convergence_files(scene)),
+            ("relaxation_methods", method_files(scene)),
+        )
+        if files
+    ]
 
 
 def scene_results(scene):
@@ -79,8 +98,14 @@ def scene_results(scene):
         files.append(f"{folder}/accuracy.csv")
     if scene.stability:
         files.append(f"{folder}/stability.csv")
-    if scene.convergence:
+    if scene.convergence or method_files(scene):
         files.append(f"{folder}/convergence.csv")
+    if scene.prony:
+        files += [f"{folder}/bond_series.csv", f"{folder}/bond_series.nc"]
+        if scene.models and scene.reference:
+            files.append(f"{folder}/accuracy_over_time.csv")
+        if scene.prony.checks:
+            files.append(f"{folder}/relaxation_stability.csv")
     return files
 
 

@@ -24,6 +24,8 @@ rule convergence_table:
             caption="../report/convergence.rst",
             category="{scene}",
         ),
+    params:
+        groups=lambda wildcards: ladder_groups(scene_of(wildcards)),
     message:
         "{wildcards.scene}: error and time of each discretisation"
     script:
@@ -44,3 +46,59 @@ rule stability:
         "{wildcards.scene}: estimate, flag and cost of every point"
     script:
         "../scripts/stability.py"
+
+
+rule accuracy_over_time:
+    input:
+        study="results/{scene}/study.nc",
+        sources=sources("relaxation_tables.py"),
+    output:
+        report(
+            "results/{scene}/accuracy_over_time.csv",
+            caption="../report/accuracy_over_time.rst",
+            category="{scene}",
+        ),
+    params:
+        table="accuracy_over_time",
+    message:
+        "{wildcards.scene}: error of each model over time"
+    script:
+        "../scripts/relaxation_tables.py"
+
+
+rule relaxation_stability:
+    input:
+        study="results/{scene}/study.nc",
+        sources=sources("relaxation_tables.py"),
+    output:
+        report(
+            "results/{scene}/relaxation_stability.csv",
+            caption="../report/relaxation_stability.rst",
+            category="{scene}",
+        ),
+    params:
+        table="relaxation_stability",
+    message:
+        "{wildcards.scene}: flag, estimate and check of every series"
+    script:
+        "../scripts/relaxation_tables.py"
+
+
+rule bond_series:
+    input:
+        scene=ancient("params/{scene}.yaml"),
+        study="results/{scene}/study.nc",
+        sources=sources("bond_series.py"),
+    output:
+        csv=report(
+            "results/{scene}/bond_series.csv",
+            caption="../report/bond_series.rst",
+            category="{scene}",
+        ),
+        netcdf="results/{scene}/bond_series.nc",
+    params:
+        digest=lambda wildcards: scene_of(wildcards).digest,
+    message:
+        "{wildcards.scene}: the bonds' own series"
+    script:
+        "../scripts/bond_series.py"

@@ -1,6 +1,7 @@
 """A scene's batches into one file."""
 
 from bondcell.collect import collect, collect_convergence, collect_other_loads
+from bondcell.collect_relaxation import collect_methods
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
 from bondcell.storage import write_dataset
@@ -10,8 +11,10 @@ files = snakemake.input
 with job(f"{snakemake.wildcards.scene}: collect") as log:
     scene = planned_scene(files.scene, digest=snakemake.params.digest)
     study = build_study(scene) if scene.has_points else None
-    result = collect(scene, study, files.analytic, files.reference)
-    groups = collect_other_loads(scene, study, files.analytic, files.reference)
+    points = scene, study, files.analytic, files.reference
+    result = collect(*points, relaxation=files.relaxation)
+    groups = collect_other_loads(*points, files.relaxation)
     groups |= collect_convergence(scene, files.convergence)
+    groups |= collect_methods(scene, files.methods)
     write_dataset(result, snakemake.output[0], groups)
     log.result = f"{scene.points} points, {len(groups)} groups"

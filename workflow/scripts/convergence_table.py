@@ -1,11 +1,19 @@
-"""Error, work and observed order of each discretisation."""
+"""Error, work and observed order of each discretisation, and of each method in time."""
 
+import pandas as pd
+
+from bondcell.collect_relaxation import METHODS
 from bondcell.convergence import convergence_table
 from bondcell.jobs import job
+from bondcell.relaxation_tables import methods_table
 from bondcell.storage import read_dataset, replacing
 
 with job(f"{snakemake.wildcards.scene}: convergence.csv") as log:
-    table = convergence_table(read_dataset(snakemake.input.study, "convergence"))
+    makers = {"convergence": convergence_table, METHODS: methods_table}
+    study = snakemake.input.study
+    table = pd.concat(
+        [makers[group](read_dataset(study, group)) for group in snakemake.params.groups]
+    )
     with replacing(snakemake.output[0]) as path:
         table.to_csv(path, index=False)
     log.result = f"{len(table)} rows"

@@ -24,8 +24,10 @@ NODES = 18
 
 
 @one_thread()
-def invert_reference(matrix: Relaxing, system: FullSystem, times: ArrayLike) -> FloatArray:
-    """Stiffness at a few times, ``NODES`` complex solutions each.
+def invert_reference(
+    matrix: Relaxing, system: FullSystem, times: ArrayLike, nodes: int = NODES
+) -> FloatArray:
+    """Stiffness at a few times, ``nodes`` complex solutions each.
 
     Parameters
     ----------
@@ -35,6 +37,8 @@ def invert_reference(matrix: Relaxing, system: FullSystem, times: ArrayLike) -> 
         The cell's operators.
     times
         Positive times [s].
+    nodes
+        Points of the contour.
     """
     lasting, relaxing = operators(matrix, system)
     chain = matrix.prony.shear
@@ -43,7 +47,7 @@ def invert_reference(matrix: Relaxing, system: FullSystem, times: ArrayLike) -> 
         share = chain.equilibrium + (chain.strengths / (1 + 1 / (s * chain.times))).sum()
         return stiffness_at(system, lasting, relaxing, complex(share)) / s
 
-    return np.array([talbot(transform, float(t)) for t in np.atleast_1d(times)])
+    return np.array([talbot(transform, float(t), nodes) for t in np.atleast_1d(times)])
 
 
 def stiffness_at(

@@ -22,7 +22,7 @@ from bondcell.fem.reference import solve as solve_reference
 from bondcell.fem.structured import CellSolver, find_load, geometry_of
 from bondcell.fem.threads import one_thread
 from bondcell.prony.bank import Bank
-from bondcell.prony.chain import Chain
+from bondcell.prony.chain import Chain, decade_below
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.positive_fit import PositiveFit, positive_fit
 from bondcell.status import Status
@@ -88,7 +88,7 @@ def relax(
         both ends.
     """
     started = time.perf_counter()
-    end = float(matrix.prony.shear.equilibrium)
+    end = decade_below(float(matrix.prony.shear.equilibrium))
     state = np.concatenate([*matrix.cell.as_dict().values()]).tobytes()
     reduced = _reduced(_Asked(state, matrix.convention, end, load, bc, tolerance, matrix))
     known = reduced.fit is not None
@@ -151,6 +151,12 @@ def _reduced(asked: _Asked) -> _Reduced:
     good = discretisation + reduction <= asked.tolerance
     status = Status.ok if good else Status.tolerance_not_met
     return _Reduced(fit, discretisation, reduction, status, order, solver.dof)
+
+
+def forget() -> None:
+    """Give up the reduced models and solvers that are kept, for timings of a first call."""
+    _reduced.cache_clear()
+    _solver.cache_clear()
 
 
 def _carries_pressure(matrix: Relaxing, load: str, bc: str) -> bool:

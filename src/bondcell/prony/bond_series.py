@@ -13,7 +13,7 @@ from bondcell.cell import Cell, FloatArray
 from bondcell.errors import UnsupportedLoad, Violation
 from bondcell.models.model import Model
 from bondcell.prony.bank import Bank
-from bondcell.prony.chain import Chain
+from bondcell.prony.chain import Chain, decade_below
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.model_banks import BANKS
 from bondcell.prony.sampled_bank import sampled_bank
@@ -133,7 +133,7 @@ def _fitted(
     formula: Callable[..., Any], matrix: Relaxing, options: dict[str, Any]
 ) -> tuple[Chain, FloatArray]:
     modulus = matrix.shear
-    end = float(matrix.prony.shear.equilibrium)
+    end = decade_below(float(matrix.prony.shear.equilibrium))
     state = np.concatenate([*matrix.cell.as_dict().values()]).tobytes()
     asked = _Asked(formula, state, matrix.convention, end, tuple(options.items()), matrix)
     bank, error = _fit(asked)

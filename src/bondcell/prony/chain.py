@@ -112,6 +112,17 @@ class Chain:
         return element(np.ones(1), np.ones(1)).dtype
 
 
+def decade_below(share: float) -> float:
+    """The power of ten at or below a share: series that end in one decade share what is fitted.
+
+    Examples
+    --------
+    >>> decade_below(0.014), decade_below(0.0)
+    (0.01, 0.0)
+    """
+    return float(f"1e{int(np.floor(np.log10(share) + 1e-9))}") if share > 0 else 0.0
+
+
 def merged(strengths: FloatArray, times: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Terms of one chain in ascending time: equal times added up, zero strengths left out.
 

@@ -1,0 +1,44 @@
+"""Which block of a scene stands at which path: for hints on keys that do not exist."""
+
+from __future__ import annotations
+
+from bondcell.scene_blocks import Case, CellInputs, Convergence, Reference
+from bondcell.scene_fields import Block
+from bondcell.scene_prony import BondTable, Methods, PronyBlock, Spectrum
+from bondcell.scene_sweep import Range, Sweep
+from bondcell.scene_violations import KeyPath
+from bondcell.time_fields import FrequencySpan, Terms, TimeSpan
+
+_BLOCKS: dict[str, type[Block]] = {
+    "cell": CellInputs,
+    "reference": Reference,
+    "convergence": Convergence,
+    "sweep": Sweep,
+    "prony": PronyBlock,
+}
+
+_OF_PRONY: dict[str, type[Block]] = {
+    "series": Terms,
+    "spectrum": Spectrum,
+    "times": TimeSpan,
+    "frequencies": FrequencySpan,
+    "bond": BondTable,
+    "methods": Methods,
+}
+
+
+def block_of(path: KeyPath) -> type[Block] | None:
+    """The block at a path, None for the scene itself.
+
+    Examples
+    --------
+    >>> block_of(("sweep", "gap")).__name__, block_of(()) is None
+    ('Range', True)
+    """
+    if not path:
+        return None
+    if len(path) == 1:
+        return _BLOCKS[str(path[0])]
+    if path[0] == "prony":
+        return _OF_PRONY[str(path[1])]
+    return Range if path[0] == "sweep" else Case

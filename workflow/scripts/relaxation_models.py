@@ -1,0 +1,20 @@
+"""Relaxation by a scene's analytic models at the points of one batch."""
+
+from bondcell.batch_files import write_batch
+from bondcell.batches import Batch
+from bondcell.jobs import job
+from bondcell.planned_scene import planned_scene
+from bondcell.relaxation_batch import asked_models, compute_relaxation
+from bondcell.study import build_study
+
+load = snakemake.wildcards.load
+batch = Batch.parse(f"relaxation_models_{load}_{snakemake.wildcards.part}")
+with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
+    log.unit = "geometries"
+    digest = snakemake.params.digest
+    scene = planned_scene(snakemake.input.scene, relaxation_digest=digest)
+    asked = asked_models(scene, load)
+    study = build_study(scene)
+    result = compute_relaxation(study, batch, scene.prony, asked, load, log.progress)
+    write_batch(result, snakemake.output[0], digest)
+    log.result = f"{result.sizes['series']} series at {result.sizes['point']} points"
