@@ -9,6 +9,7 @@ import xarray as xr
 
 from bondcell import provenance
 from bondcell.errors import DataError, Violation
+from bondcell.sealed_files import is_whole
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset
 
@@ -27,17 +28,21 @@ def write_batch(dataset: xr.Dataset, path: str | Path, digest: str) -> None:
     digest
         Identity of the parameters.
     """
-    write_dataset(dataset.assign_attrs({SEAL: digest, **provenance.machine()}), path)
+    about = {SEAL: digest, **provenance.machine()}
+    write_dataset(dataset.assign_attrs(about), path, sealed=True)
 
 
 def read_batch(path: str | Path, digest: str) -> xr.Dataset:
-    """Read a batch that was computed for these parameters.
+    """Read a batch that was computed for these parameters, every bit as it was written.
 
     Raises
     ------
     DataError
         The file is damaged, or was computed for other parameters.
     """
+    if Path(path).is_file() and not is_whole(path):
+        allowed = "a batch that matches its checksum: run again, it will be computed again"
+        raise DataError([Violation("file", str(path), allowed)], str(path))
     batch = read_dataset(path)
     sealed = batch.attrs.get(SEAL)
     if sealed != digest:

@@ -76,5 +76,9 @@ class DataError(InputError):
     """A result file cannot be read, or is not what it should be."""
 
 
+class CannotWrite(BondcellError):
+    """A file cannot be written: no space, no permission; what was there before still is."""
+
+
 class MissingLibrary(BondcellError):
     """A system library that an optional step needs is absent; the message says what to install."""

@@ -8,9 +8,9 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from bondcell.errors import BondcellError
+from bondcell.errors import BondcellError, InputError
 
-EXIT_BAD_INPUT = 2
+EXIT_FAILED, EXIT_BAD_INPUT = 1, 2
 PROGRESS_SECONDS = 10.0
 """Time between two lines on the progress of a long job [s]."""
 
@@ -42,7 +42,9 @@ class Log:
 
 @contextmanager
 def job(name: str) -> Iterator[Log]:
-    """Run the block as a job: a complaint about input ends it with its message and exit status 2.
+    """Run the block as a job: what goes wrong in a known way ends it with one message.
+
+    The exit status is 2 after bad input and 1 after anything else, a full disk for instance.
 
     Parameters
     ----------
@@ -61,5 +63,6 @@ def job(name: str) -> Iterator[Log]:
             yield log
         except BondcellError as error:
             log.say(f"error: {error}")
-            raise SystemExit(EXIT_BAD_INPUT) from error
+            status = EXIT_BAD_INPUT if isinstance(error, InputError) else EXIT_FAILED
+            raise SystemExit(status) from error
     log.close()

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import errno
+import glob
 import os
+import shutil
+import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -10,14 +14,18 @@ from typing import Any
 
 import xarray as xr
 
-from bondcell.errors import DataError, Violation
+from bondcell.errors import CannotWrite, DataError, Violation
+from bondcell.sealed_files import seal
 
 CONVENTIONS = "CF-1.11"
 READABLE = "a complete netCDF-4 file"
 
 
 def write_dataset(
-    dataset: xr.Dataset, path: str | Path, groups: Mapping[str, xr.Dataset] | None = None
+    dataset: xr.Dataset,
+    path: str | Path,
+    groups: Mapping[str, xr.Dataset] | None = None,
+    sealed: bool = False,
 ) -> Path:
     """Write a dataset to a compressed netCDF-4 file that appears under its name only when complete.
 
@@ -29,11 +37,18 @@ def write_dataset(
         The file; its folder is made if need be, an existing file is replaced.
     groups
         More datasets, each stored in the netCDF group of its name.
+    sealed
+        Whether the file ends in a checksum of itself, see `bondcell.sealed_files`.
 
     Returns
     -------
     pathlib.Path
         `path`.
+
+    Raises
+    ------
+    CannotWrite
+        No space, no permission: nothing is left behind, an existing file stays as it was.
 
     Examples
     --------
@@ -49,6 +64,8 @@ def write_dataset(
         _write_group(root, temporary, None)
         for name, group in (groups or {}).items():
             _write_group(group, temporary, name)
+        if sealed:
+            seal(temporary)
     return target
 
 
@@ -85,6 +102,14 @@ def read_dataset(path: str | Path, group: str | None = None) -> xr.Dataset:
 def replacing(path: str | Path) -> Iterator[Path]:
     """A temporary name beside `path` that takes its place when the block ends well.
 
+    The content is on the disk before it gets its name. What killed writers of the same file left
+    behind is removed.
+
+    Raises
+    ------
+    CannotWrite
+        The disk or the folder refuses.
+
     Examples
     --------
     >>> import tempfile
@@ -97,17 +122,64 @@ def replacing(path: str | Path) -> Iterator[Path]:
     'gap,stiffness'
     """
     target = Path(path)
-    target.parent.mkdir(parents=True, exist_ok=True)
     temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        for left in target.parent.glob(f".{glob.escape(target.name)}.*.tmp"):
+            left.unlink(missing_ok=True)
         yield temporary
+        _flush(temporary)
         os.replace(temporary, target)
+    except OSError as error:
+        if error.errno not in _REFUSALS:
+            raise
+        raise CannotWrite(_refusal(target, error)) from error
     finally:
         if temporary.exists():  # a read-only folder refuses to delete even what is not there
             temporary.unlink()
 
 
+_REFUSALS = {
+    getattr(errno, name)
+    for name in ("EACCES", "EDQUOT", "EFBIG", "EIO", "ENOSPC", "EPERM", "EROFS")
+    if hasattr(errno, name)
+}
+
+
+def _flush(path: Path) -> None:
+    """Have a file's content on the disk, so that no crash leaves an empty file under its name."""
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())
+
+
+def _refusal(target: Path, error: Exception) -> str:
+    """Why a file cannot be written, with the space that is left.
+
+    The netCDF library says "permission denied" of a full disk: so a plain file is tried.
+    """
+    folder = next(place for place in target.absolute().parents if place.is_dir())
+    reason = str(error)
+    try:
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(bytes(_PROBE))
+    except OSError as plain:
+        reason = os.strerror(plain.errno or 0)
+    free = shutil.disk_usage(folder).free / 1e6
+    return f"{target} cannot be written: {reason} ({free:.3g} MB are free there)"
+
+
+_PROBE = 1 << 18
+"""Bytes written to learn why a disk refuses."""
+
+
 def _write_group(dataset: xr.Dataset, path: Path, group: str | None) -> None:
+    try:
+        _to_netcdf(dataset, path, group)
+    except RuntimeError as error:  # the library's word for all that the disk refuses
+        raise CannotWrite(_refusal(path, error)) from error
+
+
+def _to_netcdf(dataset: xr.Dataset, path: Path, group: str | None) -> None:
     dataset.to_netcdf(
         path,
         mode="a" if group else "w",
