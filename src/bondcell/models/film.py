@@ -17,7 +17,7 @@ LONGEST = 3.0
 """Gap over the cylinder's radius beyond which the rest is a bar."""
 
 RELATIVE_ERROR = 1e-4
-"""Bound of quadrature and round-off, see tests/verification/test_film.py."""
+"""Bound of quadrature and round-off, see tests/verification/test_film.py; reduction adds to it."""
 
 
 def energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -> Energies:
@@ -94,10 +94,9 @@ def normal(cell: Cell) -> Springs:
     scale = np.maximum(flat.radius_i, flat.radius_j)
     outer = flat.cylinder_radius / scale
     gap = np.minimum(flat.gap / scale, LONGEST * outer)
-    value = minimum(flat, gap, energies)
+    value, loss = minimum(flat, gap, energies)
     value /= 1 + value * (flat.gap / scale - gap) / (np.pi * outer**2)
-    stiffness = value * flat.young_m * scale
-    return Springs.of_cell(cell, stiffness.reshape(cell.shape), RELATIVE_ERROR)
+    return _springs(cell, value * flat.young_m * scale, loss)
 
 
 def torsion(cell: Cell) -> Springs:
@@ -134,11 +133,10 @@ def torsion(cell: Cell) -> Springs:
     scale = np.maximum(flat.radius_i, flat.radius_j)
     outer = flat.cylinder_radius / scale
     gap = np.minimum(flat.gap / scale, LONGEST * outer)
-    value = minimum(flat, gap, film_torsion.energies)
+    value, loss = minimum(flat, gap, film_torsion.energies)
     bar = np.pi * outer**4 / (4 * (1 + flat.poisson_m))
     value /= 1 + value * (flat.gap / scale - gap) / bar
-    stiffness = value * flat.young_m * scale**3
-    return Springs.of_cell(cell, stiffness.reshape(cell.shape), RELATIVE_ERROR)
+    return _springs(cell, value * flat.young_m * scale**3, loss)
 
 
 def shear(cell: Cell) -> Springs:
@@ -210,14 +208,19 @@ def bending(cell: Cell) -> Springs:
 
 def _lateral(cell: Cell, assemble: Assembly, power: int) -> Springs:
     flat = cell.ravel()
-    value = np.full(flat.radius_i.shape, np.nan)
+    value, loss = np.full(flat.radius_i.shape, np.nan), np.zeros(flat.radius_i.shape)
     short = np.flatnonzero(flat.gap <= LONGEST * flat.cylinder_radius)
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)
-        least = minimum(own, own.gap / scale, assemble, mirrors=False)
+        least, loss[short] = minimum(own, own.gap / scale, assemble, mirrors=False)
         value[short] = least * own.young_m * scale**power
-    return Springs.of_cell(cell, value.reshape(cell.shape), RELATIVE_ERROR)
+    return _springs(cell, value, loss)
+
+
+def _springs(cell: Cell, stiffness: FloatArray, loss: FloatArray) -> Springs:
+    error = (RELATIVE_ERROR + loss).reshape(cell.shape)
+    return Springs.of_cell(cell, stiffness.reshape(cell.shape), error)
 
 
 SMALLEST_GAP = 1e-5

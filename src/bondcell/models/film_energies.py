@@ -11,15 +11,11 @@ from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.models.film_domain import Geometry, panel_count
+from bondcell.models.film_reduced import least_energies_of_many
+from bondcell.models.film_solve import least_energies
 
 BATCH = 16
 """Geometries assembled at once, to stay in the cache."""
-
-POINTS = 256
-"""Systems solved at once, to bound the memory."""
-
-RIDGE = 1e-13
-"""Added to the scaled matrix: fields that nearly repeat each other do no harm."""
 
 ISOCHORIC_FROM = 1e6
 """Ratio of bulk to shear modulus above which fields without divergence are also tried alone."""
@@ -77,26 +73,10 @@ def placed(
     return moved, (spread[0], spread[1])
 
 
-def least_energy(matrix: FloatArray) -> FloatArray:
-    """Least ``x . A x`` over all x with ``x_0 = 1``, for matrices of shape (points, n, n).
-
-    Notes
-    -----
-    With the scaled matrix, b its first column below the first row and S the rest, ``(S + ridge) y =
-    -b`` and the energy at that y is ``A_00 + y . b - ridge y . y``: a bound, not an estimate.
-    """
-    scale = 1 / np.sqrt(np.diagonal(matrix, axis1=-2, axis2=-1))
-    matrix *= scale[:, :, None]
-    matrix *= scale[:, None, :]
-    inner, column = matrix[:, 1:, 1:], matrix[:, 1:, :1]
-    np.einsum("pkk->pk", inner)[:] += RIDGE
-    found = np.linalg.solve(inner, -column)
-    gain = ((column - RIDGE * found) * found).sum(axis=(1, 2))
-    return np.asarray((matrix[:, 0, 0] + gain) / scale[:, 0] ** 2)
-
-
-def minimum(cell: Cell, gap: FloatArray, assemble: Assembly, mirrors: bool = True) -> FloatArray:
-    """Least energy, twice, over ``E_m`` and powers of the largest radius.
+def minimum(
+    cell: Cell, gap: FloatArray, assemble: Assembly, mirrors: bool = True
+) -> tuple[FloatArray, FloatArray]:
+    """Least energy, twice, over ``E_m`` and powers of the largest radius, and its loss.
 
     Parameters
     ----------
@@ -108,6 +88,11 @@ def minimum(cell: Cell, gap: FloatArray, assemble: Assembly, mirrors: bool = Tru
         The load's energies.
     mirrors
         Whether the load of a pair of equal particles has mirror symmetry.
+
+    Returns
+    -------
+    tuple of ndarray
+        Energies, and how much higher they may be than the least over all fields, relative.
     """
     scale = np.maximum(cell.radius_i, cell.radius_j)
     key = _keys(cell, scale, gap)
@@ -116,17 +101,16 @@ def minimum(cell: Cell, gap: FloatArray, assemble: Assembly, mirrors: bool = Tru
     place = place.reshape(-1)
     order = np.argsort(place, kind="stable")
     starts = np.searchsorted(place[order], np.arange(own.shape[1] + 1))
-    value = np.empty(gap.shape)
+    value, loss = np.empty(gap.shape), np.empty(gap.shape)
     for first, last in _batches(own[:KINDS]):
         part = own[:, first:last]
         radius_i, radius_j, width, edge, nu_i, nu_j = part[KINDS:, :, None]
         geometry = Geometry(radius_i, radius_j, width, edge, mirrored=bool(part[0, 0]))
         forms = assemble(geometry, nu_i, nu_j)
-        points = order[starts[first] : starts[last]]
-        for k in range(0, points.size, POINTS):
-            some = points[k : k + POINTS]
-            value[some] = _stiffness(forms, place[some] - first, cell.take(some))
-    return value
+        for k in range(last - first):
+            points = order[starts[first + k] : starts[first + k + 1]]
+            value[points], loss[points] = _energies(forms, k, cell.take(points))
+    return value, loss
 
 
 def _keys(cell: Cell, scale: FloatArray, gap: FloatArray) -> FloatArray:
@@ -153,45 +137,52 @@ def _batches(kinds: FloatArray) -> list[tuple[int, int]]:
     ]
 
 
-def _stiffness(forms: Energies, at: NDArray[np.int64], cell: Cell) -> FloatArray:
-    """Least energies of points whose forms are at positions ``at``."""
+def _energies(forms: Energies, k: int, cell: Cell) -> tuple[FloatArray, FloatArray]:
+    """Least energies of points on geometry k, and their loss."""
     rigid = np.isinf(np.stack([cell.young_i, cell.young_j]))
-    value = np.empty(at.size)
+    value, loss = np.empty(cell.young_m.size), np.empty(cell.young_m.size)
     for pattern in np.unique(rigid, axis=1).T:
         here = np.flatnonzero((rigid == pattern[:, None]).all(axis=0))
-        kept = np.flatnonzero(~forms.moved[pattern].any(axis=0))
-        value[here] = _open_stiffness(forms, kept, at[here], cell.take(here), pattern)
-    return value
+        value[here], loss[here] = _open_energies(forms, k, cell.take(here), pattern)
+    return value, loss
 
 
-def _open_stiffness(
-    forms: Energies,
-    kept: NDArray[np.int64],
-    at: NDArray[np.int64],
-    cell: Cell,
-    rigid: NDArray[np.bool_],
-) -> FloatArray:
-    """The same for points with the same rigid particles, from the fields ``kept``."""
-    mu = 1 / (2 * (1 + cell.poisson_m))
-    compressibility = 3 * (1 - 2 * cell.poisson_m)
-    block = np.ix_(np.arange(forms.shear.shape[0]), kept, kept)
-    matrix = mu[:, None, None] * forms.shear[block][at]
+def _open_energies(
+    forms: Energies, k: int, cell: Cell, rigid: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """The same for points with the same rigid particles, which take out the fields they move."""
+    kept = np.flatnonzero(~forms.moved[rigid].any(axis=0))
+    block = np.ix_(kept, kept)
+    stack, factors = [forms.shear[k][block]], [1 / (2 * (1 + cell.poisson_m))]
     for own, young in enumerate((cell.young_i, cell.young_j)):
         if not rigid[own]:
-            ratio = (young / cell.young_m)[:, None, None]
-            matrix += ratio * forms.particles[own][block][at]
+            stack.append(forms.particles[own][k][block])
+            factors.append(young / cell.young_m)
+    compressibility = 3 * (1 - 2 * cell.poisson_m)
     n = int((kept < forms.isochoric).sum())
     if n == kept.size:
-        return least_energy(matrix)
-    tight = compressibility < 1 / (ISOCHORIC_FROM * mu)
-    best = np.full(at.size, np.inf)
+        return least_energies_of_many(np.stack(stack), np.stack(factors, axis=1))
+    value, loss = np.full(compressibility.size, np.inf), np.zeros(compressibility.size)
+    tight = compressibility * ISOCHORIC_FROM < 1 / factors[0]
     if tight.any():
-        best[tight] = least_energy(matrix[tight, :n, :n])
-    soft = compressibility > 0
-    if not soft.all():
-        matrix = matrix[soft]
-    if soft.any():
-        bulk = forms.bulk[:, kept[n:, None] - forms.isochoric, kept[n:] - forms.isochoric]
-        matrix[:, n:, n:] += bulk[at[soft]] / compressibility[soft, None, None]
-        best[soft] = np.fmin(best[soft], least_energy(matrix))
-    return best
+        still = np.stack([form[:n, :n] for form in stack])
+        own_factors = np.stack([factor[tight] for factor in factors], axis=1)
+        value[tight], loss[tight] = least_energies_of_many(still, own_factors)
+    bulk = np.zeros_like(stack[0])
+    late = kept[n:] - forms.isochoric
+    bulk[n:, n:] = forms.bulk[k][np.ix_(late, late)]
+    every = np.stack([*stack, bulk])
+    for some, solve in (
+        (~tight, least_energies_of_many),
+        (tight & (compressibility > 0), _one_by_one),
+    ):
+        if some.any():
+            own_factors = np.stack([*(f[some] for f in factors), 1 / compressibility[some]], axis=1)
+            least, lost = solve(every, own_factors)
+            loss[some] = np.where(least < value[some], lost, loss[some])
+            value[some] = np.fmin(value[some], least)
+    return value, loss
+
+
+def _one_by_one(forms: FloatArray, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    return least_energies(forms, factors), np.zeros(factors.shape[0])
