@@ -87,8 +87,9 @@ class Scene(Block):
     )
     atlas: Flag = Field(
         False,
-        description="Whether the sweep is an accuracy atlas: error by region, best models and error "
-        "against run time instead of curves. With the axes gap_ratio, modulus_ratio, poisson_m.",
+        description="Whether the sweep is an accuracy atlas: error by region, best models and "
+        "error against run time instead of curves. With the axes gap_ratio, modulus_ratio, "
+        "poisson_m.",
     )
     convergence: Convergence | None = Field(None, description="Convergence study; left out: none.")
     prony: PronyBlock | None = Field(
