@@ -12,15 +12,12 @@ import xarray as xr
 from bondcell.batch_files import read_batch
 from bondcell.errors import DataError, Violation
 from bondcell.inputs import cell_from_study
-from bondcell.relaxation_names import INDEX, VARIABLES, attributes, with_equal_terms
+from bondcell.relaxation_names import INDEX, METHODS, VARIABLES, attributes, with_equal_terms
 from bondcell.result_names import result_names
 from bondcell.status import Status
 
 if TYPE_CHECKING:
     from bondcell.scene import Scene
-
-METHODS = "relaxation_methods"
-"""Group of the comparison of methods in time."""
 
 _BLANK: dict[str, Any] = {
     "relaxation_status": int(Status.not_computed),

@@ -34,6 +34,9 @@ VARIABLES: dict[str, tuple[str, ...]] = {
 }
 """Name -> dimensions; in a scene's file the swept axes take the place of ``point``."""
 
+METHODS = "relaxation_methods"
+"""Group of the comparison of methods in time in a scene's file."""
+
 TERM_VARIABLES = ("K_k", "tau_k")
 
 _ONE = {"units": "1"}

@@ -153,8 +153,8 @@ def relaxation_stability(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:
         ``load``, ``model``, ``convention``, ``series``, the axes, ``terms`` of the bond,
         ``K_start``, ``K_inf`` [N m-1; N m rad-1], ``status``, ``error_estimate``, ``check_error``
         (against the elastic stiffness at real Laplace variables), ``check_allowed``, ``sound``:
-        whether a value has a check within what its estimates allow, K never rises, and a fluid
-        that nothing confines ends in nothing.
+        whether a value has a check within what its estimates allow and K never rises, or a flag
+        says that there is none; ``is_fluid``: the shear modulus relaxes to nothing.
     """
     tables = []
     for load, study in loads.items():
@@ -181,7 +181,7 @@ def relaxation_stability(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:
         frame = tidy.to_dataframe(dim_order=dims).reset_index()
         relaxing = study["series_relaxing"].to_series()
         frame.insert(0, "load", load)
-        frame["is_fluid"] = frame["series"].map(relaxing).to_numpy() >= 1
+        frame["is_fluid"] = frame["series"].map(relaxing).to_numpy() >= 1 - 1e-12
         tables.append(frame[frame["status"] != Status.not_computed])
     if not tables:
         return pd.DataFrame()

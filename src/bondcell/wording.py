@@ -21,6 +21,7 @@ SYMBOLS = {
     "poisson_j": "ν_j",
     "poisson_m": "ν_m",
     "time": "t",
+    "temperature": "T",
 }
 """Symbol of each axis, plain text."""
 
@@ -66,6 +67,14 @@ LADDERS = {
     "reduced_basis": "reduced basis, a point online",
 }
 """Discretisations in tables and legends."""
+
+METHODS = {
+    "exact_series": "exact series",
+    "time_stepping": "time stepping",
+    "laplace_inversion": "Laplace inversion",
+    "shortcut": "shortcut K(0) g(t)",
+}
+"""Ways to K(t) in tables and legends."""
 
 _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G", 12: "T"}
 _PREFIXED = {"m": "m", "Pa": "Pa", "s": "s", "N m-1": "N/m", "N m rad-1": "N m/rad"}
@@ -189,6 +198,8 @@ def quantity(value: Any, unit: str, digits: int = 4) -> str:
         return f"{number(value)} {_PREFIXED[unit]}"
     power = 3 * math.floor(math.log10(abs(value)) / 3)
     # Lengths below a millimetre are still said in millimetres down to a tenth of one.
+    if unit == "s" and power > 0:  # nobody counts megaseconds
+        return f"{number(value, digits)} s"
     power = -3 if unit == "m" and 1e-4 <= abs(value) < 1e-3 else min(max(power, -12), 12)
     return f"{number(value / 10.0**power, digits)} {_PREFIXES[power]}{_PREFIXED[unit]}"
 

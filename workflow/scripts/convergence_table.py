@@ -2,9 +2,9 @@
 
 import pandas as pd
 
-from bondcell.collect_relaxation import METHODS
 from bondcell.convergence import convergence_table
 from bondcell.jobs import job
+from bondcell.relaxation_names import METHODS
 from bondcell.relaxation_tables import methods_table
 from bondcell.storage import read_dataset, replacing
 

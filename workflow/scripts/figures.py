@@ -6,6 +6,7 @@ from bondcell.figures import draw_scene
 from bondcell.jobs import job
 from bondcell.load_groups import read_loads
 from bondcell.planned_scene import planned_scene
+from bondcell.relaxation_names import METHODS
 from bondcell.storage import read_dataset
 
 with job(f"{snakemake.wildcards.scene}: figures") as log:
@@ -13,6 +14,9 @@ with job(f"{snakemake.wildcards.scene}: figures") as log:
     study, *others = read_loads(snakemake.input.study).values()
     group = "convergence" if scene.convergence else None
     convergence = read_dataset(snakemake.input.study, group) if group else None
+    timed = scene.prony is not None and scene.prony.methods is not None
+    methods = read_dataset(snakemake.input.study, METHODS) if timed else None
     folder = Path(snakemake.output[0])
     folder.mkdir(parents=True, exist_ok=True)
-    log.result = f"{len(draw_scene(scene, study, convergence, folder, others))} files"
+    paths = draw_scene(scene, study, convergence, folder, others, methods)
+    log.result = f"{len(paths)} files"

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bondcell.atlas import accuracy_by_region, error_against_time
+from bondcell.figures.atlas_maps import atlas_maps
+from bondcell.figures.atlas_time import draw_error_against_time
 from bondcell.figures.bars import draw_bars
 from bondcell.figures.convergence import convergence_drawings
 from bondcell.figures.curves import draw_curves
 from bondcell.figures.error_maps import draw_error_maps
+from bondcell.figures.relaxation import relaxation_drawings
+from bondcell.figures.relaxation_checks import draw_checks, draw_methods
 from bondcell.figures.stability import draw_stability
 from bondcell.figures.style import Drawing, drawing_style, save
 from bondcell.result_view import load_name, model_names, swept_axes
@@ -26,6 +31,7 @@ def draw_scene(
     convergence: xr.Dataset | None,
     folder: Path,
     others: Sequence[xr.Dataset] = (),
+    methods: xr.Dataset | None = None,
 ) -> list[Path]:
     """Draw everything a scene's results have to show.
 
@@ -41,6 +47,8 @@ def draw_scene(
         Where the figures go.
     others
         Results of the sweep under the scene's other loads.
+    methods
+        Result of its comparison of methods in time, if any.
 
     Returns
     -------
@@ -52,13 +60,34 @@ def draw_scene(
         drawings = []
         if scene.stability:
             drawings.append(draw_stability(loads))
-        if scene.models or not scene.stability:
+        if scene.atlas:
+            drawings += atlas_drawings(loads)
+        elif scene.prony is not None:
+            for load, found in loads.items():
+                drawings += relaxation_drawings(found, "" if found is study else f"_{load}")
+            if scene.prony.checks:
+                drawings.append(draw_checks(loads))
+        elif scene.models or not scene.stability:
             drawings += sweep_drawings(study)
             for load, found in list(loads.items())[1:]:
                 drawings += sweep_drawings(found, f"_{load}")
         if convergence is not None:
             drawings += convergence_drawings(convergence)
+        if methods is not None:
+            drawings.append(draw_methods(methods))
         return [path for drawing in drawings for path in save(drawing, folder)]
+
+
+def atlas_drawings(loads: Mapping[str, xr.Dataset]) -> Iterator[Drawing]:
+    """Error against run time, maps of errors and of the cheapest formulas.
+
+    Parameters
+    ----------
+    loads
+        Load -> result of an atlas.
+    """
+    yield draw_error_against_time(error_against_time(accuracy_by_region(loads)))
+    yield from atlas_maps(loads)
 
 
 def sweep_drawings(study: xr.Dataset, suffix: str = "") -> Iterator[Drawing]:

@@ -10,7 +10,22 @@ from xml.etree import ElementTree
 LARGEST_SVG = 700_000
 """A larger SVG [bytes] is embedded as its PNG."""
 
-ORDER = ("stability", "error_maps", "convergence_time", "convergence_dof", "convergence_basis")
+ORDER = (
+    "relaxation",
+    "error_over_time",
+    "complex_stiffness",
+    "relaxation_checks",
+    "relaxation_methods",
+    "stability",
+    "error_against_time",
+    "best_formula_100",
+    "best_formula_010",
+    "atlas_errors_normal",
+    "error_maps",
+    "convergence_time",
+    "convergence_dof",
+    "convergence_basis",
+)
 """Figures that come first, by name."""
 
 _DUBLIN_CORE = "{http://purl.org/dc/elements/1.1/}"

@@ -10,9 +10,15 @@ import xarray as xr
 
 from bondcell.accuracy import accuracy_table
 from bondcell.load_groups import read_loads
+from bondcell.report.atlas_part import atlas_part
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
 from bondcell.report.findings import Finding
+from bondcell.report.relaxation_part import (
+    read_relaxing,
+    relaxation_findings,
+    relaxation_lines,
+)
 from bondcell.report.setup_table import Line, setup_lines
 from bondcell.report.stability_part import stability_findings, stability_lines
 from bondcell.report.sweep_findings import sweep_findings
@@ -24,7 +30,19 @@ from bondcell.storage import read_dataset
 if TYPE_CHECKING:
     from bondcell.scene import Scene
 
-FILES = ("study.nc", "accuracy.csv", "stability.csv", "convergence.csv")
+FILES = (
+    "study.nc",
+    "accuracy.csv",
+    "stability.csv",
+    "convergence.csv",
+    "accuracy_by_region.csv",
+    "best_models.csv",
+    "error_against_time.csv",
+    "accuracy_over_time.csv",
+    "relaxation_stability.csv",
+    "bond_series.csv",
+    "bond_series.nc",
+)
 """Files of a scene that the page links."""
 
 
@@ -76,7 +94,15 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         points = stability_table(loads)
         findings += stability_findings(points, study)
         tables += stability_lines(points, study)
-    if scene.models or not scene.stability:
+    if scene.atlas:
+        said, shown = atlas_part(loads)
+        findings += said
+        tables += shown
+    elif scene.prony is not None:
+        relaxing = read_relaxing(folder, loads, with_methods=scene.prony.methods is not None)
+        findings += relaxation_findings(relaxing)
+        tables += relaxation_lines(relaxing)
+    elif scene.models or not scene.stability:
         for load, found in loads.items():
             table = accuracy_table(found)
             findings += _under(load, sweep_findings(found, table), several=len(loads) > 1)
