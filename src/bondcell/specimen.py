@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from time import perf_counter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -17,6 +17,12 @@ from bondcell.models import MODELS
 from bondcell.specimen_bonds import Material
 from bondcell.specimen_lattice import VARIANTS, specimen_lattice
 from bondcell.status import Status, cf_flag_attributes
+
+if TYPE_CHECKING:
+    from bondcell.solid.tets import Tets
+    from bondcell.specimen_solid import SolidAnswer
+
+Watch = Callable[[str, str, "Tets", "SolidAnswer"], None]
 
 SOLIDS = ("fe_rigid", "fe_elastic")
 METHODS = (*SOLIDS, *VARIANTS)
@@ -62,6 +68,7 @@ def specimen(
     walls: Sequence[str] = WALLS,
     per_gap: Sequence[float] = (1.0, 0.5),
     material: Material | None = None,
+    watch: Watch | None = None,
 ) -> xr.Dataset:
     """Displace particles 1 to 3 of the specimen by 0.5 mm, in every asked way.
 
@@ -73,6 +80,8 @@ def specimen(
         Element sizes of the solid relative to the gap, falling: the ladder of its meshes.
     material
         Elastic constants; default: the paper's.
+    watch
+        Called as ``watch(method, walls, mesh, answer)`` after each solution of the solid.
 
     Returns
     -------
@@ -101,12 +110,17 @@ def specimen(
     ways = given.DISPLACEMENT * np.array([LOADINGS[name] for name in loadings])
     solids = [name for name in methods if name in SOLIDS]
     if solids:
-        _add_solids(data, solids, ways, material)
+        _add_solids(data, solids, ways, material, watch)
+    started = perf_counter()
     triangles = _triangle_ladder(material) if "lattice_full" in methods else []
+    cell_seconds = perf_counter() - started
     for method in methods:
         if method in VARIANTS and VARIANTS[method][0] in (*MODELS, "paper"):
             for wall in walls:
                 _add_lattice(data, method, wall, ways, material, triangles)
+    if triangles:
+        # Its pockets come from a cell of their own, solved once for all walls.
+        data.seconds.loc[{"method": "lattice_full"}] += cell_seconds
     data["displacement_norm"] = np.sqrt(
         (data.displacement**2).sum(("particle", "component"), skipna=False)
     )
@@ -206,7 +220,11 @@ def _empty(
 
 
 def _add_solids(
-    data: xr.Dataset, solids: Sequence[str], ways: FloatArray, material: Material
+    data: xr.Dataset,
+    solids: Sequence[str],
+    ways: FloatArray,
+    material: Material,
+    watch: Watch | None,
 ) -> None:
     from bondcell.specimen_solid import (
         elastic_answer,
@@ -221,6 +239,8 @@ def _add_solids(
         for method in solids:
             for wall in data.walls.values.tolist():
                 answer = solve[method](mesh, material, wall, ways)
+                if watch:
+                    watch(method, wall, mesh, answer)
                 at = {"method": method, "walls": wall}
                 data.level_energy.loc[{**at, "per_gap": size}] = answer.energy
                 data.level_dof.loc[{**at, "per_gap": size}] = answer.dof

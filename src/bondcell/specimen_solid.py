@@ -18,11 +18,15 @@ from bondcell.solid.sphere_mesh import sphere_mesh
 from bondcell.solid.stiffness import Elastic
 from bondcell.solid.tets import Tets
 from bondcell.specimen_bonds import Material
+from bondcell.specimen_bound import softest
 
 X, Y, Z = range(3)
 
-EXPECTED_ORDER = 2.0
-"""Order of the energy in the element size that two meshes are taken to have; three show it."""
+EXPECTED_ORDER = 1.0
+"""Order of the energy in the element size that two meshes are taken to have; three show it.
+
+The order rises with refinement, to above 2 below half a gap; meshes of an element a gap show one.
+"""
 
 
 @dataclass(frozen=True)
@@ -39,12 +43,19 @@ class SolidAnswer:
         Unknowns.
     seconds
         Wall time of assembly and solution [s].
+    field
+        Displacements of all nodes of the half [m], shape (nodes, 3, cases); elastic particles only.
+    softest
+        Smallest ``2 U / n^2`` of any displacement [N/m], see `bondcell.specimen_bound`; rigid
+        particles only.
     """
 
     energy: FloatArray
     motion: FloatArray
     dof: int
     seconds: float
+    field: FloatArray | None = None
+    softest: float = np.nan
 
 
 def half_specimen() -> Packing:
@@ -84,7 +95,10 @@ def rigid_answer(
     for case, displacement in enumerate(displacements):
         moved, _, half = found.solve(np.array(given.LOADED), displacement)
         motion[case, found.moving], energy[case] = moved, 2 * half
-    return SolidAnswer(energy, motion, found.dof, perf_counter() - started)
+    seconds = perf_counter() - started
+    shifts = np.tile([True, True, False], found.moving.size)
+    least = softest(2 * found.stiffness, shifts)
+    return SolidAnswer(energy, motion, found.dof, seconds, softest=least)
 
 
 def elastic_answer(
@@ -101,7 +115,8 @@ def elastic_answer(
         displacements,
     )
     motion = found.motion.transpose(2, 0, 1)
-    return SolidAnswer(2 * found.energy, motion, found.dof, perf_counter() - started)
+    seconds = perf_counter() - started
+    return SolidAnswer(2 * found.energy, motion, found.dof, seconds, field=found.field)
 
 
 def specimen_mesh(per_gap: float) -> Tets:
