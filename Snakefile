@@ -9,6 +9,7 @@ min_version("9.5")
 
 
 include: "workflow/rules/prepare.smk"
+include: "workflow/rules/damaged.smk"
 include: "workflow/rules/compute.smk"
 include: "workflow/rules/collect.smk"
 include: "workflow/rules/tables.smk"
@@ -23,3 +24,4 @@ rule all:
     input:
         "results/report.html",
         lambda wildcards: [path for scene in study_scenes() for path in scene_results(scene)],
+        lambda wildcards: [path for scene in study_scenes() for path in damaged_files(scene)],

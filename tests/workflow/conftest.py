@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -77,7 +78,9 @@ class Workspace:
     def append(self, name: str, text: str) -> None:
         self.write(name, (self.folder / name).read_text() + text)
 
-    def snakemake(self, *arguments: str) -> subprocess.CompletedProcess[str]:
+    def snakemake(
+        self, *arguments: str, preexec_fn: Callable[[], None] | None = None
+    ) -> subprocess.CompletedProcess[str]:
         """Run Snakemake on two cores; standard output and error come together."""
         for file in self.modules_folder.iterdir():
             file.unlink()
@@ -89,6 +92,7 @@ class Workspace:
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
+            preexec_fn=preexec_fn,
         )
 
     def modules(self) -> dict[str, set[str]]:

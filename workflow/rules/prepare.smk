@@ -64,18 +64,18 @@ def batch_files(scene, method):
     from bondcell.batch_plan import plan
 
     names = [batch.name for batch in plan(scene) if batch.method.split("_")[0] == method]
-    return [f"results/{scene.name}/batches/{name}.nc" for name in names]
+    return checked([f"results/{scene.name}/batches/{name}.nc" for name in names])
 
 
 def convergence_files(scene):
     """File of a scene's convergence study, if it has one."""
-    return [f"results/{scene.name}/batches/convergence.nc"] if scene.convergence else []
+    return checked([f"results/{scene.name}/batches/convergence.nc"] if scene.convergence else [])
 
 
 def method_files(scene):
     """File of a scene's comparison of methods in time, if it has one."""
     wanted = scene.prony and scene.prony.methods
-    return [f"results/{scene.name}/batches/relaxation_methods.nc"] if wanted else []
+    return checked([f"results/{scene.name}/batches/relaxation_methods.nc"] if wanted else [])
 
 
 def ladder_groups(scene):

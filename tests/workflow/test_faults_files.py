@@ -1,0 +1,193 @@
+"""Faults of files: damaged batches are computed again, a disk that refuses loses nothing."""
+
+import ctypes
+import os
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from bondcell.errors import CannotWrite
+from bondcell.sealed_files import is_whole, seal
+from bondcell.storage import read_dataset, write_dataset
+
+SCENE = """\
+title: Some points
+cell: {radius_i: 7.5 mm, young_i: 30 GPa, young_m: 1 MPa, poisson_i: 0.25, poisson_m: 0.3}
+sweep: {gap: [0.5 mm, 2 mm]}
+models: [fsi]
+reference: {tolerance: 1e-2}
+"""
+STUDY = "results/some/study.nc"
+BATCH = "results/some/batches/fe_roller_1of1.nc"
+
+
+@pytest.fixture(scope="module")
+def some(make_workspace, tmp_path_factory):
+    """A workspace whose scene was computed, and what came out."""
+    workspace = make_workspace(tmp_path_factory.mktemp("files"), some=SCENE)
+    del workspace.environment["MODULES_FOLDER"]
+    done = workspace.snakemake(STUDY)
+    assert done.returncode == 0, done.stdout
+    return workspace, read_dataset(workspace / STUDY)
+
+
+def but_times(dataset):
+    return dataset.drop_vars([name for name in dataset if "seconds" in name])
+
+
+def truncate(content):
+    return content[: len(content) // 2]
+
+
+def flip_a_bit(content):
+    middle = len(content) // 2
+    return content[:middle] + bytes([content[middle] ^ 1]) + content[middle + 1 :]
+
+
+def test_damaged_batch_is_computed_again(some):
+    workspace, before = some
+    batch = workspace / BATCH
+    assert is_whole(batch)
+    batch.write_bytes(flip_a_bit(batch.read_bytes()))
+    (workspace / STUDY).unlink()
+    planned = workspace.snakemake("--dry-run", STUDY)
+    assert f"{BATCH} does not match its checksum: it would be removed" in planned.stdout
+    assert batch.exists()
+    done = workspace.snakemake(STUDY)
+    assert done.returncode == 0, done.stdout
+    assert f"{BATCH} does not match its checksum: removed" in done.stdout
+    assert is_whole(batch)
+    xr.testing.assert_identical(but_times(read_dataset(workspace / STUDY)), but_times(before))
+
+
+@pytest.mark.slow
+def test_damaged_batch_of_a_finished_study_is_computed_again(some):
+    workspace, before = some
+    assert workspace.snakemake().returncode == 0
+    for damage in (truncate, flip_a_bit):
+        batch = workspace / BATCH
+        batch.write_bytes(damage(batch.read_bytes()))
+        done = workspace.snakemake()
+        assert done.returncode == 0, done.stdout
+        assert f"{BATCH} does not match its checksum: removed" in done.stdout
+        assert is_whole(batch)
+        xr.testing.assert_identical(but_times(read_dataset(workspace / STUDY)), but_times(before))
+        assert "Nothing to be done" in workspace.snakemake().stdout
+
+
+@pytest.mark.parametrize("damage", [truncate, flip_a_bit, lambda content: content + b" "])
+def test_any_change_breaks_the_seal(tmp_path, damage):
+    path = tmp_path / "batch.nc"
+    path.write_bytes(np.random.default_rng(1).bytes(3_000_000))
+    seal(path)
+    assert is_whole(path)
+    path.write_bytes(damage(path.read_bytes()))
+    assert not is_whole(path)
+
+
+def test_short_and_empty_files_have_no_seal(tmp_path):
+    path = tmp_path / "batch.nc"
+    for content in (b"", b"\nsha256 ", b"CDF"):
+        path.write_bytes(content)
+        assert not is_whole(path)
+
+
+def test_stale_temporary_files_are_removed_by_the_next_writer(tmp_path):
+    (tmp_path / ".study.nc.4711.tmp").write_bytes(b"half of a file whose writer was killed")
+    (tmp_path / ".other.nc.4711.tmp").write_bytes(b"of another file")
+    write_dataset(xr.Dataset({"gap": 1.0}), tmp_path / "study.nc")
+    assert sorted(os.listdir(tmp_path)) == [".other.nc.4711.tmp", "study.nc"]
+
+
+FULL_DISK = """\
+import resource, sys, numpy as np, xarray as xr
+from bondcell.errors import CannotWrite
+from bondcell.storage import write_dataset
+data = xr.Dataset({"a": ("x", np.random.default_rng(0).random(3000))})
+size = write_dataset(data, sys.argv[1], sealed=True).stat().st_size
+for limit in [*range(0, size - 100, 1999), *range(size - 100, size, 7)]:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, resource.RLIM_INFINITY))
+    try:
+        write_dataset(2 * data, sys.argv[1], sealed=True)
+    except CannotWrite as error:
+        assert "cannot be written: File too large" in str(error), error
+    else:
+        sys.exit(f"written with a limit of {limit} of {size} bytes")
+"""
+
+
+def test_a_disk_that_fills_up_anywhere_leaves_the_old_file_and_nothing_else(tmp_path):
+    path = tmp_path / "batch.nc"
+    subprocess.run([sys.executable, "-c", FULL_DISK, path], check=True)
+    assert is_whole(path)
+    assert os.listdir(tmp_path) == [path.name]
+    assert read_dataset(path).a.max() < 1
+
+
+def without_room():
+    """Files of this process and its children end at 8 kB, as on a full disk."""
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, resource.RLIM_INFINITY))
+
+
+def without_override():
+    """Let this process's children heed permissions even if they run as root."""
+    drop_from_bounding_set, override, read_search = 24, 1, 2
+    if sys.platform == "linux":
+        for capability in (override, read_search):
+            ctypes.CDLL(None).prctl(drop_from_bounding_set, capability, 0, 0, 0)
+
+
+def permit(workspace, mode):
+    for name in (BATCH, STUDY):
+        folder = (workspace / name).parent
+        if folder.exists():  # Snakemake clears a folder away whose only file failed
+            folder.chmod(mode)
+
+
+@pytest.mark.parametrize(
+    ("fault", "reason"),
+    [(without_room, "File too large"), (without_override, "Permission denied")],
+    ids=["full", "read-only"],
+)
+def test_disk_that_refuses_is_said_and_nothing_is_lost(some, fault, reason):
+    workspace, _ = some
+    scene = workspace / "params/some.yaml"
+    scene.write_text(SCENE.replace("1e-2", "1e-3"))
+    study = (workspace / STUDY).read_bytes()
+    permit(workspace, 0o755 if fault is without_room else 0o555)
+    try:
+        done = workspace.snakemake(STUDY, preexec_fn=fault)
+    finally:
+        permit(workspace, 0o755)
+        scene.write_text(SCENE)
+    assert done.returncode == 1
+    assert reason in done.stdout
+    assert BATCH in done.stdout
+    assert (workspace / STUDY).read_bytes() == study
+    assert not list((workspace / "results").rglob("*.tmp"))
+
+
+def test_after_a_disk_that_refused_the_next_run_goes_on(some):
+    workspace, before = some
+    (workspace / STUDY).unlink()
+    done = workspace.snakemake(STUDY)
+    assert done.returncode == 0, done.stdout
+    xr.testing.assert_identical(but_times(read_dataset(workspace / STUDY)), but_times(before))
+
+
+def test_read_only_folder_is_one_clear_error(tmp_path):
+    code = "import sys, xarray; from bondcell.storage import write_dataset\n"
+    code += "write_dataset(xarray.Dataset({'gap': 1.0}), sys.argv[1])"
+    tmp_path.chmod(0o555)
+    command = [sys.executable, "-c", code, tmp_path / "study.nc"]
+    done = subprocess.run(
+        command, preexec_fn=without_override, capture_output=True, text=True, check=False
+    )
+    tmp_path.chmod(0o755)
+    assert f"{CannotWrite.__name__}: {tmp_path}/study.nc cannot be written: " in done.stderr
+    assert "Permission denied" in done.stderr
+    assert os.listdir(tmp_path) == []

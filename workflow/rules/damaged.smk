@@ -1,0 +1,31 @@
+# Batch files that no longer match their checksum are removed while the run is planned, and so
+# computed again. Who only looks (a dry run, --unlock, a job's own process) removes nothing.
+from bondcell.sealed_files import is_whole
+
+
+@cache
+def is_damaged(path):
+    """Whether a batch file is there but not whole; then it is removed, or would be."""
+    if not workflow.is_main_process or not Path(path).is_file() or is_whole(path):
+        return False
+    acts = workflow.executor_plugin is not None and not workflow.dryrun
+    what = "removed, it is computed again where it is needed" if acts else "it would be removed"
+    print(f"warning: {path} does not match its checksum: {what}", file=sys.stderr)
+    if acts:
+        Path(path).unlink()
+    return True
+
+
+def checked(files):
+    """Files of batches, of which the damaged ones are gone."""
+    for path in files:
+        is_damaged(path)
+    return files
+
+
+def damaged_files(scene):
+    """Files of a scene's jobs that were found damaged."""
+    files = convergence_files(scene) + method_files(scene)
+    for method in ("analytic", "fe", "relaxation"):
+        files += batch_files(scene, method)
+    return [path for path in files if is_damaged(path)]
