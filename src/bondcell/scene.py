@@ -29,6 +29,7 @@ from bondcell.scene_keys import block_of
 from bondcell.scene_materials import read_materials
 from bondcell.scene_names import LoadNames, ModelName
 from bondcell.scene_prony import PronyBlock
+from bondcell.scene_specimen import SpecimenBlock
 from bondcell.scene_sweep import DERIVED, Sweep
 from bondcell.scene_violations import KeyPath, as_given, found_violations, null_violations, without
 from bondcell.yaml_loading import load_mapping
@@ -95,6 +96,11 @@ class Scene(Block):
     prony: PronyBlock | None = Field(
         None, description="A matrix that relaxes; left out: there is no time."
     )
+    specimen: SpecimenBlock | None = Field(
+        None,
+        description="The paper's specimen as lattices of bonds and as a solid, in a scene of its "
+        "own; of the cell only the moduli count, left out: the paper's.",
+    )
 
     _name: str = PrivateAttr("scene")
     _given: str = PrivateAttr("{}")
@@ -142,12 +148,14 @@ class Scene(Block):
     @property
     def uses_finite_elements(self) -> bool:
         """Whether anything is meshed."""
-        return self.reference is not None or self.convergence is not None
+        solid = self.specimen is not None and self.specimen.needs_meshes
+        return self.reference is not None or self.convergence is not None or solid
 
     @property
     def uses_triangles(self) -> bool:
         """Whether the unstructured mesher is needed."""
-        return self.convergence is not None and bool(self.convergence.sizes)
+        solid = self.specimen is not None and self.specimen.needs_meshes
+        return solid or (self.convergence is not None and bool(self.convergence.sizes))
 
     @property
     def fe_names(self) -> dict[str, str]:
@@ -201,6 +209,11 @@ class Scene(Block):
     def methods_digest(self) -> str:
         """Identity of what the comparison of methods in time depends on."""
         return scene_digests.methods(self)
+
+    @property
+    def specimen_digest(self) -> str:
+        """Identity of what the specimen's results depend on."""
+        return scene_digests.specimen(self)
 
     @property
     def sweep_digest(self) -> str:
@@ -337,11 +350,15 @@ def _name_violations(name: str) -> list[Violation]:
     return [Violation("name", name, f"{NAME_RULE}, other than {', '.join(RESERVED)}")]
 
 
+_SALVAGED = (("cell",), ("sweep",), ("convergence",), ("specimen",))
+"""Blocks of which the sound keys are kept where others are wrong."""
+
+
 def _prunable(path: KeyPath) -> KeyPath:
     """The part of a scene that can be left out when something in it is wrong."""
     if path[:2] == ("convergence", "cases"):
         return path[:3]
-    return path[:2] if path[:1] in (("cell",), ("sweep",), ("convergence",)) else path[:1]
+    return path[:2] if path[:1] in _SALVAGED else path[:1]
 
 
 def _salvage(data: Mapping[str, Any], bad: set[KeyPath]) -> Scene | None:

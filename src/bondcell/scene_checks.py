@@ -13,6 +13,7 @@ from bondcell.likely_units import unlikely
 from bondcell.result_names import models_with
 from bondcell.scene_names import covering
 from bondcell.scene_prony_checks import prony_violations
+from bondcell.scene_specimen_checks import specimen_violations
 from bondcell.scene_sweep import DERIVED, MOST_POINTS, resolve_inputs
 from bondcell.scene_violations import KeyPath
 
@@ -48,7 +49,7 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
     given = scene.cell.given()
     yield from _range_violations(given, "cell.")
     asked = scene.has_points or scene.sweep or {("models",), ("reference",)} & set(bad)
-    if asked and not incomplete:
+    if asked and not incomplete and scene.specimen is None:
         axes = scene.axis_names
         supplied = {*given, *axes, *(DERIVED[name] for name in axes if name in DERIVED), *wrong}
         for name in REQUIRED:
@@ -61,6 +62,7 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
         yield from _axis_violations(given, scene.axes)
     yield from _case_violations(scene, given, wrong, incomplete)
     yield from prony_violations(scene, bad)
+    yield from specimen_violations(scene)
 
 
 def unit_warnings(scene: Scene) -> list[str]:
@@ -78,8 +80,9 @@ def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Viol
     something = {("models",), ("reference",)} & set(bad)
     if scene.sweep and not (scene.has_points or something):
         yield Violation("models", None, "at least one model, or a reference, for the sweep")
-    elif not (scene.has_points or scene.convergence or something or ("convergence",) in bad):
-        yield Violation("models", None, "something to compute: models, reference or convergence")
+    elif not (scene.has_points or _other_work(scene, bad) or something):
+        words = "something to compute: models, reference, convergence or specimen"
+        yield Violation("models", None, words)
     if scene.contributions and "fsi" not in scene.models and ("models",) not in bad:
         yield Violation("contributions", True, "true only with fsi among the models")
     block = scene.convergence
@@ -92,6 +95,12 @@ def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Viol
         yield Violation("stability", True, "true only with a reference")
     yield from _atlas_violations(scene, bad)
     yield from _load_violations(scene)
+
+
+def _other_work(scene: Scene, bad: Collection[KeyPath]) -> bool:
+    """Whether there is something to do besides the points of a sweep."""
+    wanted = scene.convergence or scene.specimen
+    return bool(wanted) or any(path[0] in ("convergence", "specimen") for path in bad)
 
 
 def _atlas_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:

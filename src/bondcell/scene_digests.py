@@ -76,6 +76,13 @@ def relaxation(scene: Scene) -> str:
     return _digest([sweep(scene), _prony_content(scene)])
 
 
+def specimen(scene: Scene) -> str:
+    """Digest of what the specimen's results depend on."""
+    if scene.specimen is None:
+        return _digest(None)
+    return _digest([scene.cell.given(), scene.specimen.model_dump(mode="json")])
+
+
 def methods(scene: Scene) -> str:
     """Digest of what the comparison of methods in time depends on."""
     if scene.prony is None or scene.prony.methods is None:

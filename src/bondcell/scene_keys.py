@@ -5,6 +5,12 @@ from __future__ import annotations
 from bondcell.scene_blocks import Case, CellInputs, Convergence, Reference
 from bondcell.scene_fields import Block
 from bondcell.scene_prony import BondTable, Methods, PronyBlock, Spectrum
+from bondcell.scene_specimen import (
+    Ladders,
+    SpecimenBlock,
+    SpecimenFiniteStrain,
+    SpecimenRelaxation,
+)
 from bondcell.scene_sweep import Range, Sweep
 from bondcell.scene_violations import KeyPath
 from bondcell.time_fields import FrequencySpan, Terms, TimeSpan
@@ -15,6 +21,16 @@ _BLOCKS: dict[str, type[Block]] = {
     "convergence": Convergence,
     "sweep": Sweep,
     "prony": PronyBlock,
+    "specimen": SpecimenBlock,
+}
+
+_OF_SPECIMEN: dict[str, type[Block]] = {
+    "elastic": Ladders,
+    "rigid": Ladders,
+    "relaxation": SpecimenRelaxation,
+    "finite_strain": SpecimenFiniteStrain,
+    "series": Terms,
+    "times": TimeSpan,
 }
 
 _OF_PRONY: dict[str, type[Block]] = {
@@ -41,4 +57,6 @@ def block_of(path: KeyPath) -> type[Block] | None:
         return _BLOCKS[str(path[0])]
     if path[0] == "prony":
         return _OF_PRONY[str(path[1])]
+    if path[0] == "specimen":
+        return _OF_SPECIMEN[str(path[-1])]
     return Range if path[0] == "sweep" else Case

@@ -16,6 +16,7 @@ from bondcell.lattice import specimen_geometry as given
 from bondcell.models import MODELS
 from bondcell.specimen_bonds import Material
 from bondcell.specimen_lattice import VARIANTS, specimen_lattice
+from bondcell.specimen_names import LATTICES, LOADINGS, SOLIDS, WALLS
 from bondcell.status import Status, cf_flag_attributes
 
 if TYPE_CHECKING:
@@ -24,15 +25,8 @@ if TYPE_CHECKING:
 
 Watch = Callable[[str, str, "Tets", "SolidAnswer"], None]
 
-SOLIDS = ("fe_rigid", "fe_elastic")
-METHODS = (*SOLIDS, *VARIANTS)
+METHODS = (*SOLIDS, *LATTICES)
 """Ways to answer; the first two are the three-dimensional solid."""
-
-LOADINGS = {"horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
-"""Directions in which particles 1 to 3 are displaced."""
-
-WALLS = ("free", "fixed")
-"""The sides of the box."""
 
 MODES = ("normal", "shear", "bending", "torsion", "pocket", "ground")
 """Parts of a lattice's energy."""

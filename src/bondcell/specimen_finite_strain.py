@@ -12,13 +12,9 @@ from bondcell.errors import InputError, Violation
 from bondcell.lattice import specimen_geometry as given
 from bondcell.lattice.large import solve_large
 from bondcell.specimen_bonds import Material
-from bondcell.specimen_lattice import VARIANTS, specimen_lattice
-
-DIRECTIONS = {"+x": (1.0, 0.0), "-x": (-1.0, 0.0), "+y": (0.0, 1.0), "-y": (0.0, -1.0)}
-"""Ways in which particles 1 to 3 are displaced."""
-
-METHODS = ("fe_elastic", *(name for name in VARIANTS if name != "lattice_full"))
-"""The solid, neo-Hookean, and lattices with large rotations."""
+from bondcell.specimen_lattice import specimen_lattice
+from bondcell.specimen_names import DIRECTIONS
+from bondcell.specimen_names import FINITE_STRAIN as METHODS
 
 
 def specimen_finite_strain(

@@ -13,15 +13,9 @@ from bondcell.lattice import specimen_geometry as given
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
 from bondcell.prony.sampled_bank import sampled_bank
-from bondcell.specimen import LOADINGS
 from bondcell.specimen_bonds import Material
 from bondcell.specimen_lattice import VARIANTS, specimen_lattice
-
-RELAXING = ("fe_rigid", "lattice_fsi", "lattice_fe_normal", "lattice_fe_shear", "lattice_fe_beam")
-"""Methods that follow the matrix's moduli."""
-
-LOWEST = 1e-2
-"""Least share of the shear modulus to which the matrix may relax under a constant bulk modulus."""
+from bondcell.specimen_names import LOADINGS, LOWEST, RELAXING
 
 STATES = 4
 """Ratios of the moduli at which the solid is solved."""

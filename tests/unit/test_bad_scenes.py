@@ -376,3 +376,46 @@ def test_any_content_is_a_scene_or_a_scene_error(key, value, others):
         parse_scene({**SCENE, key: value})
     with contextlib.suppress(SceneError):
         parse_scene({**others, key: value})
+
+
+SPECIMEN = {"title": "A specimen", "specimen": {"lattices": ["lattice_fsi"]}}
+SERIES = {"weights": [0.6, 0.395], "times": [1, 100]}
+
+
+def test_specimen_is_a_scene_of_its_own():
+    wrong = violations(SPECIMEN | {"models": ["fsi"], "cell": {"gap": 1e-3, "poisson_m": 0.3}})
+    assert set(wrong) == {"models", "cell.gap"}
+    assert parse_scene(SPECIMEN | {"cell": {"poisson_m": 0.5}}).specimen.parts == ("lattices",)
+
+
+def test_specimen_block_lists_all_that_is_wrong():
+    block = {
+        "walls": ["glass"],
+        "elastic": {"free": [0.5, 1]},
+        "rigid": {},
+        "relaxation": {
+            "series": SERIES,
+            "times": {"start": 1, "stop": 2},
+            "methods": ["lattice_full"],
+        },
+        "finite_strain": {"steps": 0},
+    }
+    wrong = violations(SPECIMEN | {"specimen": block})
+    assert set(wrong) == {
+        "specimen.walls.0",
+        "specimen.elastic.free",
+        "specimen.rigid",
+        "specimen.relaxation.methods.0",
+        "specimen.finite_strain.steps",
+    }
+
+
+def test_specimen_says_what_its_solid_cannot_bear():
+    block = {
+        "lattices": ["lattice_fsi"],
+        "elastic": {"free": [1]},
+        "relaxation": {"series": SERIES, "times": {"start": 1, "stop": 2}},
+    }
+    cell = {"young_i": "rigid", "poisson_m": 0.495}
+    wrong = violations({"title": "A specimen", "specimen": block, "cell": cell})
+    assert set(wrong) == {"cell.young_i", "cell.poisson_m", "specimen.relaxation.series"}

@@ -384,4 +384,5 @@ def test_scene_keys_are_the_documented_ones():
         "atlas",
         "convergence",
         "prony",
+        "specimen",
     )
