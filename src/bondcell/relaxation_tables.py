@@ -17,6 +17,10 @@ AT = ("convention", "series")
 """Dimensions of every table besides the swept axes."""
 
 
+FADED = 1e-9
+"""Share of K(0) below which a bond is gone."""
+
+
 def has_relaxation(study: xr.Dataset) -> bool:
     """Whether a result has a time dimension."""
     return "relaxation" in study
@@ -29,7 +33,7 @@ def relaxation_axes(study: xr.Dataset) -> list[str]:
 
 
 def error_over_time(study: xr.Dataset, model: str, reference: str = REFERENCE) -> xr.DataArray:
-    """Signed error ``K(t)/K_FE(t) - 1`` of a model; NaN where either has no value.
+    """Signed error ``K(t)/K_FE(t) - 1`` of a model; NaN without a value or once K has faded.
 
     Parameters
     ----------
@@ -40,8 +44,8 @@ def error_over_time(study: xr.Dataset, model: str, reference: str = REFERENCE) -
     """
     usable = study["relaxation_status"] < Status.limit_exceeded
     curves = study["relaxation"].where(usable)
-    true = curves.sel(model=reference, drop=True)
-    return (curves.sel(model=model, drop=True) / true.where(true != 0) - 1).rename("error")
+    true = _not_faded(curves.sel(model=reference, drop=True))
+    return (curves.sel(model=model, drop=True) / true - 1).rename("error")
 
 
 def shortcut_error(study: xr.Dataset, model: str = REFERENCE) -> xr.DataArray:
@@ -56,7 +60,12 @@ def shortcut_error(study: xr.Dataset, model: str = REFERENCE) -> xr.DataArray:
     """
     curve = study["relaxation"].sel(model=model, drop=True)
     guess = curve.isel(time=0, drop=True) * study["shear_share"]
-    return (guess / curve.where(curve != 0) - 1).transpose(*curve.dims).rename("error")
+    return (guess / _not_faded(curve) - 1).transpose(*curve.dims).rename("error")
+
+
+def _not_faded(curve: xr.DataArray) -> xr.DataArray:
+    """NaN where nothing is left of K: ratios of vanishing stiffnesses say nothing."""
+    return curve.where(curve > FADED * curve.isel(time=0, drop=True))
 
 
 def accuracy_over_time(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:

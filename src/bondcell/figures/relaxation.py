@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
+from bondcell.figures.layout import is_logarithmic
 from bondcell.figures.style import (
     GREY,
     Drawing,
@@ -19,7 +20,7 @@ from bondcell.figures.style import (
     mathtext,
     new_figure,
 )
-from bondcell.relaxation_tables import error_over_time, relaxation_axes, shortcut_error
+from bondcell.relaxation_tables import FADED, error_over_time, relaxation_axes, shortcut_error
 from bondcell.relaxation_view import (
     convention_words,
     middle_point,
@@ -99,6 +100,7 @@ def draw_relaxation(study: xr.Dataset, name: str = "relaxation") -> Drawing:
             axes.plot(time, guess, label="shortcut $K(0)\\,g(t)$", **SHORTCUT)
         _decades(axes, "time since the step", "s")
         axes.set_yscale("log")
+        axes.set_ylim(bottom=_floor(curves.values))
         axes.set_title(series_words(series))
         shown = [*reference_names(study), *analytic_names(study)][0]
         ends = here["relaxation"].sel(series=series, model=shown).values[[0, -1]]
@@ -149,6 +151,8 @@ def draw_dynamic(study: xr.Dataset, name: str = "complex_stiffness") -> Drawing:
         upper.set_title(series_words(series))
         _decades(upper, "", "")
         _decades(lower, "angular frequency", "rad/s")
+        if is_logarithmic(np.concatenate([line.get_ydata() for line in lower.lines])):
+            lower.set_yscale("log")
     grid[0][0].set_ylabel(_label(study, "'", "''"))
     grid[1][0].set_ylabel("loss factor")
     _legend(figure, grid[0][0])
@@ -234,6 +238,12 @@ def _panels(columns: int, height: float, rows: int = 1) -> tuple[Figure, Any]:
     figure = new_figure(5.4 if columns == 1 else 3.5 * columns, height)
     grid = figure.subplots(rows, columns, sharex=True, sharey="row", squeeze=False)
     return figure, grid[0] if rows == 1 else grid
+
+
+def _floor(values: Values) -> float:
+    """Where a logarithmic axis ends: bonds that are gone would stretch it without end."""
+    known = values[np.isfinite(values) & (values > 0)]
+    return max(0.5 * float(known.min()), FADED * float(known.max())) if known.size else 1e-9
 
 
 def _dots(axes: Axes, x: Values, y: Values, model: str, *, hollow: bool = False) -> None:

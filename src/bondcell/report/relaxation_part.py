@@ -114,7 +114,7 @@ def _over_time(found: Relaxing) -> Iterator[Finding]:
         yield Finding(text)
         return
     start, end = (percent(row[name], sign=True) for name in ("error_start", "error_end"))
-    rise = f"{number(row['poisson_start'], 3)} to {number(row['poisson_end'], 5)}"
+    rise = f"{number(row['poisson_start'], 6)} to {number(row['poisson_end'], 6)}"
     yield Finding(
         f"A model that is good at t = 0 need not be good later: the error of "
         f"{model_phrase(row['model'])} goes from {start} at t = 0 to {end} at the last time, while "

@@ -32,6 +32,7 @@ def setup_lines(scene: Scene) -> list[Line]:
         lines.append(("models", listed(model_name(name) for name in scene.models)))
     lines += list(_reference(scene))
     lines.append(("load" if len(scene.loads) == 1 else "loads", listed(scene.loads)))
+    lines += list(_prony(scene))
     lines += list(_convergence(scene, given.get("convergence") or {}))
     return lines
 
@@ -41,6 +42,28 @@ def _reference(scene: Scene) -> Iterator[Line]:
         conditions = f"{listed(scene.reference.bc)}; " if "normal" in scene.loads else ""
         tolerance = number(scene.reference.tolerance)
         yield "finite element reference", f"{conditions}relative tolerance {tolerance}"
+
+
+def _prony(scene: Scene) -> Iterator[Line]:
+    block = scene.prony
+    if block is None:
+        return
+    if block.materials:
+        of_own = ", with their own moduli" if block.own_modulus else ", times and weights of them"
+        yield "materials", f"{listed(block.materials)}{of_own}"
+    if block.series:
+        yield "series given", listed(block.series)
+    if block.spectrum is not None:
+        spectrum = block.spectrum
+        words = (
+            f"terms {_listed_numbers(spectrum.terms)}; decades "
+            f"{_listed_numbers(spectrum.decades)}; share that relaxes "
+            f"{_listed_numbers(spectrum.relaxing)}; weights {listed(spectrum.profile)}"
+        )
+        yield "generated series", words
+    yield "what relaxes", listed(name.replace("_", " ") for name in block.conventions)
+    ends = f"{number(block.times.start)} s to {number(block.times.stop)} s"
+    yield "times", f"{block.times.points} from {ends}, logarithmic spacing"
 
 
 def _convergence(scene: Scene, given: Mapping[str, Any]) -> Iterator[Line]:
