@@ -16,8 +16,9 @@ PARALLEL ?= -n auto --dist loadfile
 WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
 
 SURROGATE = src/bondcell/models/data/surrogate.npz
+ACCURACY_MAP = src/bondcell/models/data/accuracy_map.npz
 
-.PHONY: surrogate help study test test-all lint format lock schema bench setup system-deps clean
+.PHONY: surrogate accuracy-map help study test test-all lint format lock schema bench setup system-deps clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
@@ -48,6 +49,10 @@ format: setup ## format the sources
 surrogate: setup ## rebuild the surrogate's data from the reference, minutes
 	$(WITH_PATH) $(RUN) snakemake --cores $(CORES) results/surrogate.npz
 	cp results/surrogate.npz $(SURROGATE)
+
+accuracy-map: setup ## rebuild the data of the advice from the full atlas, minutes
+	$(WITH_PATH) $(RUN) snakemake --cores $(CORES) results/accuracy_map.npz
+	cp results/accuracy_map.npz $(ACCURACY_MAP)
 
 schema: setup ## write params/*.schema.json, the scene format for editors
 	$(RUN) bondcell.scene_schema

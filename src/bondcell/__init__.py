@@ -18,6 +18,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from bondcell.advice import Advice, advise
     from bondcell.bond_tables import reduce_series, write_bond_table
     from bondcell.errors import (
         BondcellError,
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "MODELS",
+    "Advice",
     "BondcellError",
     "DataError",
     "InputError",
@@ -52,6 +54,7 @@ __all__ = [
     "UnsupportedLoad",
     "Violation",
     "__version__",
+    "advise",
     "dynamic_stiffness",
     "evaluate",
     "read_prony",
@@ -63,6 +66,7 @@ __all__ = [
 
 _HOME = {
     "MODELS": "bondcell.models",
+    "Advice": "bondcell.advice",
     "BondcellError": "bondcell.errors",
     "DataError": "bondcell.errors",
     "InputError": "bondcell.errors",
@@ -74,6 +78,7 @@ _HOME = {
     "UnknownModel": "bondcell.errors",
     "UnsupportedLoad": "bondcell.errors",
     "Violation": "bondcell.errors",
+    "advise": "bondcell.advice",
     "dynamic_stiffness": "bondcell.relaxation",
     "evaluate": "bondcell.evaluate",
     "read_prony": "bondcell.prony_files",

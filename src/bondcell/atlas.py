@@ -42,6 +42,9 @@ BAND_WORDS: Mapping[str, str] = {
 }
 """What a band is, in symbols."""
 
+AXES = tuple(BANDS)
+"""Axes of the maps; over all others the worst point counts."""
+
 WANTED = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4)
 """Errors for which the cheapest model is looked up."""
 
@@ -83,6 +86,37 @@ def regions() -> list[Region]:
         for band in bands
     ]
     return [Region(), *single, *(Region(*bands) for bands in product(*names))]
+
+
+def worst_errors(study: xr.Dataset, model: str) -> FloatArray:
+    """Signed error of a model on `AXES`, the largest in size over all other axes.
+
+    Parameters
+    ----------
+    study
+        Result of an atlas under one load.
+    model
+        An analytic model; where it lacks a value at any of the other axes' points it is NaN.
+    """
+    values = _on_axes(signed_error(study, model))
+    size = np.where(np.isnan(values), np.inf, np.abs(values))
+    return np.asarray(np.take_along_axis(values, size.argmax(-1)[..., None], -1)[..., 0])
+
+
+def valid_everywhere(study: xr.Dataset, model: str) -> Mask:
+    """Whether a model has a value inside its valid range, on `AXES`, at all other axes' points."""
+    status = study["status"].sel(model=model, drop=True)
+    return np.asarray((_on_axes(status) == Status.ok).all(-1))
+
+
+def _on_axes(variable: xr.DataArray) -> FloatArray:
+    """Values on `AXES` and, last, all other axes as one."""
+    others = [str(dim) for dim in variable.dims if dim not in AXES]
+    return np.asarray(
+        variable.stack(other=others).transpose(*AXES, "other").values
+        if others
+        else variable.transpose(*AXES).values[..., None]
+    )
 
 
 def accuracy_by_region(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:

@@ -1,4 +1,4 @@
-# Tables of an accuracy atlas.
+# Tables of an accuracy atlas, and the summary of the full one that the package ships for its advice.
 rule atlas_tables:
     input:
         study="results/{scene}/study.nc",
@@ -23,3 +23,17 @@ rule atlas_tables:
         "{wildcards.scene}: error by region, best models, error against run time"
     script:
         "../scripts/atlas_tables.py"
+
+
+rule accuracy_map:
+    input:
+        study="results/atlas/study.nc",
+        sources=sources("accuracy_map.py"),
+    output:
+        "results/accuracy_map.npz",
+    # It measures time, see rule convergence.
+    threads: WHOLE_MACHINE
+    message:
+        "accuracy map: summary of the atlas for the package"
+    script:
+        "../scripts/accuracy_map.py"

@@ -66,7 +66,7 @@ def _complain(error: InputError) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    from bondcell.cli import model_list, show, stiffness, validation
+    from bondcell.cli import advise, model_list, show, stiffness, validation
 
     parser = argparse.ArgumentParser(
         prog="bondcell",
@@ -76,7 +76,7 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action=_Version, help="print the version and leave")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (stiffness, validation, show, model_list):
+    for command in (stiffness, advise, validation, show, model_list):
         command.add_to(commands)
     return parser
 
