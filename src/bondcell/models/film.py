@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from bondcell.cell import Cell, FloatArray
 from bondcell.models import film_lateral, film_torsion
 from bondcell.models.film_domain import Geometry, domain
-from bondcell.models.film_energies import Assembly, Energies, gram, minimum, placed
+from bondcell.models.film_energies import Assembly, Energies, gram, minimum, placed, sum_of_grams
 from bondcell.models.film_fields import Fields, fields
 from bondcell.models.film_particles import distances, energy, traces
 from bondcell.models.model import Model, Springs
@@ -44,15 +44,12 @@ def energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -
 def _matrix_energy(trial: Fields, weights: FloatArray) -> tuple[FloatArray, FloatArray]:
     """``2 dev(e) : dev(e)`` and ``(div u)^2``, integrated."""
     scale = np.sqrt(weights)
-    divergence = trial.other[:3].sum(axis=0)
-    deviator = trial.other.copy()
-    deviator[:3] -= divergence / 3
-    strain = np.concatenate((trial.isochoric, deviator), axis=1) * scale
+    strain = np.concatenate((trial.isochoric, trial.other), axis=1)
+    strain *= scale
+    swelling = strain[:3, trial.isochoric.shape[1] :].sum(axis=0)
+    strain[:3, trial.isochoric.shape[1] :] -= swelling / 3
     strain[:3] *= np.sqrt(2.0)
-    rows = np.moveaxis(strain, 2, 0).swapaxes(1, 2)
-    rows = rows.reshape(*rows.shape[:2], -1)
-    swelling = np.moveaxis(divergence * scale, 1, 0)
-    return gram(rows), gram(swelling)
+    return sum_of_grams(strain), gram(swelling.swapaxes(0, 1))
 
 
 def normal(cell: Cell) -> Springs:

@@ -58,6 +58,11 @@ def gram(rows: FloatArray) -> FloatArray:
     return np.asarray(rows @ rows.swapaxes(-1, -2))
 
 
+def sum_of_grams(strain: FloatArray) -> FloatArray:
+    """Inner products of fields, (components, fields, cells, points) -> (cells, fields, fields)."""
+    return np.asarray(sum(gram(component.swapaxes(0, 1)) for component in strain))
+
+
 def placed(
     blocks: list[FloatArray], first: int, mirrored: bool, count: int
 ) -> tuple[NDArray[np.bool_], tuple[FloatArray, FloatArray]]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from bondcell.cell import FloatArray
 from bondcell.models.film_domain import Domain, Geometry, domain, gauss, graded_angles
-from bondcell.models.film_energies import Energies, gram, placed
+from bondcell.models.film_energies import Energies, gram, placed, sum_of_grams
 from bondcell.models.film_fields import film_coordinate, legendre
 from bondcell.models.film_particles import LEAST_COMPRESSIBILITY
 from bondcell.models.jets import Jet
@@ -145,9 +145,9 @@ def _energies(
         far = _distances(radius, geometry.film_radius)
         # Seen from plane j the axis points the other way; only omega turns its sign with it.
         sign = 1.0 if own == 0 else -1.0
-        distance = 1.0 / (space.r * space.r + z * z).sqrt()
-        shrink = distance * radius
-        local = _particle_fields(space.r * shrink, z * shrink, radius, far, poisson[own])
+        across, along, fade = space.r.first_order(), z.first_order(), fade.first_order()
+        shrink = radius * (1.0 / (across * across + along * along).sqrt())
+        local = _particle_fields(across * shrink, along * shrink, radius, far, poisson[own])
         square = shrink * shrink
         carried = [field.times(fade, alpha=square, omega=shrink * sign) for field in local]
         sides.append(np.stack([strains(field, r) for field in carried], axis=1))
@@ -199,7 +199,8 @@ def _bubbles(space: Domain, s: Jet) -> tuple[FloatArray, FloatArray]:
     rows: dict[str, list[FloatArray]] = {name: [] for name in bases}
     for name, counts in FAMILIES.items():
         for power, n in counts.items():
-            base = bases[name]
+            flows = name in ("stream", "swirl")
+            base = bases[name] if flows else bases[name].first_order()
             for _ in range(power):
                 base = base * odd
             field = base * Jet(along.parts[:, :n])
@@ -218,16 +219,16 @@ def _bubbles(space: Domain, s: Jet) -> tuple[FloatArray, FloatArray]:
 
 
 def _forms(trial: FloatArray, weights: FloatArray, isochoric: int) -> tuple[FloatArray, FloatArray]:
-    """``2 dev(e) : dev(e)`` of all fields and ``(div u)^2`` of those with divergence."""
-    scale = np.sqrt(weights)
-    divergence = trial[:3].sum(axis=0)
+    """``2 dev(e) : dev(e)`` of all fields and ``(div u)^2`` of those with divergence.
+
+    Overwrites the strains.
+    """
+    trial *= np.sqrt(weights)
+    divergence = trial[0] + trial[1] + trial[2]
     divergence[:isochoric] = 0
-    strain = trial * scale
-    strain[:3] -= divergence / 3 * scale
-    strain[:3] *= np.sqrt(2.0)
-    rows = np.moveaxis(strain, 2, 0).swapaxes(1, 2)
-    swelling = np.moveaxis(divergence[isochoric:] * scale, 1, 0)
-    return gram(rows.reshape(*rows.shape[:2], -1)), gram(swelling)
+    trial[:3] -= divergence / 3
+    trial[:3] *= np.sqrt(2.0)
+    return sum_of_grams(trial), gram(divergence[isochoric:].swapaxes(0, 1))
 
 
 def _distances(radius: FloatArray, film_radius: FloatArray) -> FloatArray:
@@ -285,7 +286,7 @@ def _particle_energy(
     r_values = (distance * np.sin(angle)[:, :, None]).reshape(grid)
     z_values = (distance * np.cos(angle)[:, :, None]).reshape(grid)
     area = (distance * (radius * share)[:, None, :] * width[:, :, None]).reshape(grid)
-    r, z = Jet.variables(r_values, z_values)
+    r, z = (one.first_order() for one in Jet.variables(r_values, z_values))
     local = _particle_fields(r, z, radius, far, poisson)
     strain = np.stack([strains(field, r_values) for field in local], axis=1)
     shear, bulk = _forms(strain, np.pi * r_values * area, 0)

@@ -78,6 +78,8 @@ class Curve:
 class Jet:
     """A function of (r, z): value, d/dr, d/dz, d2/dr2, d2/drdz, d2/dz2 on a leading axis of 6.
 
+    Without second derivatives the axis has 3 entries, as has the result of what it is joined with.
+
     Examples
     --------
     >>> r, z = Jet.variables(np.array([2.0]), np.array([3.0]))
@@ -104,6 +106,10 @@ class Jet:
         """The function itself."""
         return self.parts[0]
 
+    def first_order(self) -> Jet:
+        """The same without second derivatives, for what needs none."""
+        return Jet(self.parts[:3])
+
     def with_value(self, value: FloatArray) -> Jet:
         """The same derivatives; a value that the caller knows to more digits."""
         return Jet(np.concatenate((value[None], self.parts[1:])))
@@ -111,22 +117,25 @@ class Jet:
     def __mul__(self, other: Jet | FloatArray | float) -> Jet:
         if not isinstance(other, Jet):
             return Jet(self.parts * other)
-        a, a_r, a_z, a_rr, a_rz, a_zz = self.parts
-        b, b_r, b_z, b_rr, b_rz, b_zz = other.parts
-        out = np.empty((6, *np.broadcast_shapes(a.shape, b.shape)))
+        (a, a_r, a_z), (b, b_r, b_z) = self.parts[:3], other.parts[:3]
+        order = min(len(self.parts), len(other.parts))
+        out = np.empty((order, *np.broadcast_shapes(a.shape, b.shape)))
         out[0] = a * b
         out[1] = a_r * b + a * b_r
         out[2] = a_z * b + a * b_z
-        out[3] = a_rr * b + 2 * a_r * b_r + a * b_rr
-        out[4] = a_rz * b + a_r * b_z + a_z * b_r + a * b_rz
-        out[5] = a_zz * b + 2 * a_z * b_z + a * b_zz
+        if order > 3:
+            (a_rr, a_rz, a_zz), (b_rr, b_rz, b_zz) = self.parts[3:], other.parts[3:]
+            out[3] = a_rr * b + 2 * a_r * b_r + a * b_rr
+            out[4] = a_rz * b + a_r * b_z + a_z * b_r + a * b_rz
+            out[5] = a_zz * b + 2 * a_z * b_z + a * b_zz
         return Jet(out)
 
     __rmul__ = __mul__
 
     def __add__(self, other: Jet | FloatArray | float) -> Jet:
         if isinstance(other, Jet):
-            return Jet(self.parts + other.parts)
+            order = min(len(self.parts), len(other.parts))
+            return Jet(self.parts[:order] + other.parts[:order])
         out = self.parts.copy()
         out[0] += other
         return Jet(out)
@@ -161,19 +170,14 @@ class Jet:
 
     def compose(self, value: FloatArray, first: FloatArray, second: FloatArray) -> Jet:
         """``f(self)`` from f and its derivatives there."""
-        _, d_r, d_z, d_rr, d_rz, d_zz = self.parts
-        return Jet(
-            np.stack(
-                [
-                    value,
-                    first * d_r,
-                    first * d_z,
-                    second * d_r**2 + first * d_rr,
-                    second * d_r * d_z + first * d_rz,
-                    second * d_z**2 + first * d_zz,
-                ]
-            )
-        )
+        _, d_r, d_z, *curved = self.parts
+        rows = [value, first * d_r, first * d_z]
+        if curved:
+            d_rr, d_rz, d_zz = curved
+            rows.append(second * d_r**2 + first * d_rr)
+            rows.append(second * d_r * d_z + first * d_rz)
+            rows.append(second * d_z**2 + first * d_zz)
+        return Jet(np.stack(rows))
 
     def times_function_of(self, inner: Jet) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Parts of ``self * f(inner)`` for any f: factors of f, f' and f''."""
