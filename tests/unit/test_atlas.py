@@ -6,6 +6,10 @@ import xarray as xr
 
 from bondcell.atlas import Region, atlas_tables, regions
 from bondcell.errors import SceneError
+from bondcell.figures import atlas_drawings
+from bondcell.figures.atlas_maps import best_formula
+from bondcell.figures.style import drawing_style, save
+from bondcell.report.atlas_part import atlas_part
 from bondcell.scene import parse_scene
 from bondcell.status import Status
 
@@ -128,3 +132,34 @@ def test_error_against_time_has_a_row_for_each_model(tables):
     table = tables["error_against_time"]
     assert table["model"].tolist() == ["fsi", "film", "surrogate", "fe"]
     assert row(table, model="film")["seconds"] == 1e-3
+
+
+def test_figures_and_words_of_an_atlas(tmp_path):
+    loads = {"normal": result(), "shear": result("shear")}
+    with drawing_style():
+        drawings = list(atlas_drawings(loads))
+        names = [drawing.name for drawing in drawings]
+        assert [path.suffix for path in save(drawings[0], tmp_path)] == [".svg", ".png"]
+    assert names == [
+        *("error_against_time", "atlas_errors_normal", "atlas_errors_shear"),
+        *("best_formula_100", "best_formula_010"),
+    ]
+    assert "surrogate: of the points" in drawings[1].description
+    findings, tables = atlas_part(loads)
+    assert findings[0].key == "10 %"
+    said = " ".join(finding.text for finding in findings)
+    assert "FSI, the paper's model, is off by 10 % in the median and 200 % at most" in said
+    assert "normal 1 % and 1 %" in said
+    assert [len(table.lines) for table in tables[1:]] == [19, 19, 19, 9]
+    whole = tables[1].lines[0]
+    assert whole[:4] == ["all", "all", "all", "200 % / 10 %"]
+    assert whole[5] == "0.1 % / 0.1 %–"
+
+
+def test_best_formula_is_the_cheapest_that_serves():
+    names, best = best_formula(result(), 0.3)
+    assert names == ["fsi", "film"]
+    assert best[0, 0, 0] == 0  # fsi, within 10 %
+    assert best[2, 0, 2] == 2  # fsi is off, film outside its range
+    names, best = best_formula(result(), 0.03)
+    assert (best[:, 1:] == 1).all()

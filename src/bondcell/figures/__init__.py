@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from bondcell.atlas import accuracy_by_region, error_against_time
+from bondcell.figures.atlas_maps import atlas_maps
+from bondcell.figures.atlas_time import draw_error_against_time
 from bondcell.figures.bars import draw_bars
 from bondcell.figures.convergence import convergence_drawings
 from bondcell.figures.curves import draw_curves
@@ -57,7 +60,9 @@ def draw_scene(
         drawings = []
         if scene.stability:
             drawings.append(draw_stability(loads))
-        if scene.prony is not None:
+        if scene.atlas:
+            drawings += atlas_drawings(loads)
+        elif scene.prony is not None:
             for load, found in loads.items():
                 drawings += relaxation_drawings(found, "" if found is study else f"_{load}")
             if scene.prony.checks:
@@ -71,6 +76,18 @@ def draw_scene(
         if methods is not None:
             drawings.append(draw_methods(methods))
         return [path for drawing in drawings for path in save(drawing, folder)]
+
+
+def atlas_drawings(loads: Mapping[str, xr.Dataset]) -> Iterator[Drawing]:
+    """Error against run time, maps of errors and of the cheapest formulas.
+
+    Parameters
+    ----------
+    loads
+        Load -> result of an atlas.
+    """
+    yield draw_error_against_time(error_against_time(accuracy_by_region(loads)))
+    yield from atlas_maps(loads)
 
 
 def sweep_drawings(study: xr.Dataset, suffix: str = "") -> Iterator[Drawing]:

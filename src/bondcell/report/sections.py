@@ -10,6 +10,7 @@ import xarray as xr
 
 from bondcell.accuracy import accuracy_table
 from bondcell.load_groups import read_loads
+from bondcell.report.atlas_part import atlas_part
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
 from bondcell.report.findings import Finding
@@ -34,6 +35,9 @@ FILES = (
     "accuracy.csv",
     "stability.csv",
     "convergence.csv",
+    "accuracy_by_region.csv",
+    "best_models.csv",
+    "error_against_time.csv",
     "accuracy_over_time.csv",
     "relaxation_stability.csv",
     "bond_series.csv",
@@ -90,7 +94,11 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         points = stability_table(loads)
         findings += stability_findings(points, study)
         tables += stability_lines(points, study)
-    if scene.prony is not None:
+    if scene.atlas:
+        said, shown = atlas_part(loads)
+        findings += said
+        tables += shown
+    elif scene.prony is not None:
         relaxing = read_relaxing(folder, loads, with_methods=scene.prony.methods is not None)
         findings += relaxation_findings(relaxing)
         tables += relaxation_lines(relaxing)
