@@ -11,6 +11,7 @@ min_version("9.5")
 include: "workflow/rules/prepare.smk"
 include: "workflow/rules/damaged.smk"
 include: "workflow/rules/compute.smk"
+include: "workflow/rules/specimen.smk"
 include: "workflow/rules/collect.smk"
 include: "workflow/rules/tables.smk"
 include: "workflow/rules/atlas.smk"

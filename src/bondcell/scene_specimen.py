@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import Annotated, Any, Self
 
@@ -26,8 +27,8 @@ LARGEST_POISSON = 0.49
 """Largest Poisson's ratio that the solid's displacement elements bear."""
 
 
-def _name(known: tuple[str, ...]) -> Any:
-    return Annotated[str, one_of(lambda: known), Field(json_schema_extra={"enum": list(known)})]
+def _listed(names: Iterable[str]) -> Any:
+    return Field(json_schema_extra={"enum": list(names)})
 
 
 def _names(default: tuple[str, ...], description: str) -> Any:
@@ -44,12 +45,12 @@ def _falling(sizes: tuple[float, ...]) -> tuple[float, ...]:
     return sizes
 
 
-Lattice = _name(LATTICES)
-Loading = _name(tuple(LOADINGS))
-Wall = _name(WALLS)
-Relaxing = _name(RELAXING)
-Finite = _name(FINITE_STRAIN)
-Direction = _name(tuple(DIRECTIONS))
+Lattice = Annotated[str, one_of(lambda: LATTICES), _listed(LATTICES)]
+Loading = Annotated[str, one_of(lambda: tuple(LOADINGS)), _listed(tuple(LOADINGS))]
+Wall = Annotated[str, one_of(lambda: WALLS), _listed(WALLS)]
+Relaxing = Annotated[str, one_of(lambda: RELAXING), _listed(RELAXING)]
+Finite = Annotated[str, one_of(lambda: FINITE_STRAIN), _listed(FINITE_STRAIN)]
+Direction = Annotated[str, one_of(lambda: tuple(DIRECTIONS)), _listed(tuple(DIRECTIONS))]
 Size = Annotated[float, number_between(*SIZES)]
 Ladder = Annotated[tuple[Size, ...], AfterValidator(_falling)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from time import perf_counter
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -16,17 +16,10 @@ from bondcell.lattice import specimen_geometry as given
 from bondcell.models import MODELS
 from bondcell.specimen_bonds import Material
 from bondcell.specimen_lattice import VARIANTS, specimen_lattice
-from bondcell.specimen_names import LATTICES, LOADINGS, SOLIDS, WALLS
+from bondcell.specimen_names import LOADINGS, METHODS, SOLIDS, WALLS
 from bondcell.status import Status, cf_flag_attributes
 
-if TYPE_CHECKING:
-    from bondcell.solid.tets import Tets
-    from bondcell.specimen_solid import SolidAnswer
-
-Watch = Callable[[str, str, "Tets", "SolidAnswer"], None]
-
-METHODS = (*SOLIDS, *LATTICES)
-"""Ways to answer; the first two are the three-dimensional solid."""
+Watch = Callable[[str, str, Any, Any], None]
 
 MODES = ("normal", "shear", "bending", "torsion", "pocket", "ground")
 """Parts of a lattice's energy."""
@@ -75,7 +68,8 @@ def specimen(
     material
         Elastic constants; default: the paper's.
     watch
-        Called as ``watch(method, walls, mesh, answer)`` after each solution of the solid.
+        Called as ``watch(method, walls, mesh, answer)`` with each answer of the solid, and as
+        ``watch(method, walls, lattice, solutions)`` with a lattice's solutions of all loadings.
 
     Returns
     -------
@@ -111,7 +105,7 @@ def specimen(
     for method in methods:
         if method in VARIANTS and VARIANTS[method][0] in (*MODELS, "paper"):
             for wall in walls:
-                _add_lattice(data, method, wall, ways, material, triangles)
+                _add_lattice(data, method, wall, ways, material, triangles, watch)
     if triangles:
         # Its pockets come from a cell of their own, solved once for all walls.
         data.seconds.loc[{"method": "lattice_full"}] += cell_seconds
@@ -123,49 +117,6 @@ def specimen(
             data[name].attrs.update(attributes)
     data.attrs["title"] = "Lattices of bonds against the three-dimensional solid"
     return data
-
-
-def compare(data: xr.Dataset, reference: str = "fe_elastic") -> xr.Dataset:
-    """Errors of every method against one of them.
-
-    Parameters
-    ----------
-    data
-        From `specimen`.
-    reference
-        The method taken as right.
-
-    Returns
-    -------
-    xarray.Dataset
-        ``energy_ratio``, ``norm_ratio`` (of displacement norms), ``displacement_error`` (norm of
-        the difference of the displacement vectors of the particles that are neither loaded nor
-        fixed, over the reference's norm of them) and ``rotation_error`` (the same of the rotations
-        of all that are not fixed); NaN for lattices without rotations.
-    """
-    other = data.sel({"method": reference})
-    count = len(given.LOADED)
-    free = slice(count + 1, sum(given.ROWS[:2]))
-    moved, turned = data.displacement.sel(particle=free), data.rotation.sel(particle=slice(1, 11))
-    right_moved = other.displacement.sel(particle=free)
-    right_turned = other.rotation.sel(particle=slice(1, 11))
-    dims = ("particle", "component")
-
-    def norm(values: xr.DataArray, over: Any) -> xr.DataArray:
-        return (values**2).sum(over, skipna=False) ** 0.5
-
-    result = xr.Dataset(
-        {
-            "energy_ratio": data.energy / other.energy,
-            "norm_ratio": data.displacement_norm / other.displacement_norm,
-            "displacement_error": norm(moved - right_moved, dims) / norm(right_moved, dims),
-            "rotation_error": norm(turned - right_turned, "particle")
-            / norm(right_turned, "particle"),
-        }
-    )
-    for name in result:
-        result[name].attrs = {"units": "1", "long_name": str(name).replace("_", " ")}
-    return result.assign_attrs(reference=reference)
 
 
 def _check(chosen: dict[str, Sequence[str]], per_gap: Sequence[float]) -> None:
@@ -272,6 +223,7 @@ def _add_lattice(
     ways: FloatArray,
     material: Material,
     triangles: list[tuple[float, float]],
+    watch: Watch | None,
 ) -> None:
     """One lattice under all loadings."""
     started = perf_counter()
@@ -281,6 +233,8 @@ def _add_lattice(
     ]
     answers = [[own.solve(way) for way in ways] for own in every]
     seconds = perf_counter() - started
+    if watch:
+        watch(method, wall, every[0], answers[0])
     for loading, found in zip(data.loading.values.tolist(), answers[0], strict=True):
         at = {"method": method, "walls": wall, "loading": loading}
         data.energy.loc[at] = found.energy

@@ -16,6 +16,9 @@ LATTICES = (
 )
 """Lattices, from the paper's to the one with pockets."""
 
+METHODS = (*SOLIDS, *LATTICES)
+"""Ways to answer."""
+
 LOADINGS = {"horizontal": (1.0, 0.0), "vertical": (0.0, 1.0)}
 """Directions in which particles 1 to 3 are displaced."""
 

@@ -7,6 +7,7 @@ rule collect:
         reference=lambda wildcards: batch_files(scene_of(wildcards), "fe"),
         relaxation=lambda wildcards: batch_files(scene_of(wildcards), "relaxation"),
         methods=lambda wildcards: method_files(scene_of(wildcards)),
+        specimen=lambda wildcards: specimen_files(scene_of(wildcards)),
         convergence=lambda wildcards: convergence_files(scene_of(wildcards)),
     output:
         "results/{scene}/study.nc",

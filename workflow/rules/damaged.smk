@@ -25,7 +25,7 @@ def checked(files):
 
 def damaged_files(scene):
     """Files of a scene's jobs that were found damaged."""
-    files = convergence_files(scene) + method_files(scene)
+    files = convergence_files(scene) + method_files(scene) + specimen_files(scene)
     for method in ("analytic", "fe", "relaxation"):
         files += batch_files(scene, method)
     return [path for path in files if is_damaged(path)]

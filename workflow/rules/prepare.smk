@@ -78,6 +78,21 @@ def method_files(scene):
     return checked([f"results/{scene.name}/batches/relaxation_methods.nc"] if wanted else [])
 
 
+def specimen_files(scene):
+    """Files of the jobs of a scene's specimen, if it has one."""
+    block = scene.specimen
+    parts = [*block.parts, *(["midplane"] if block.elastic else [])] if block else []
+    return checked([f"results/{scene.name}/batches/specimen_{part}.nc" for part in parts])
+
+
+def vtk_files(scene):
+    """Files for ParaView of a scene's specimen: lattice and solid under each loading."""
+    block = scene.specimen
+    kinds = ["lattice", *(["solid"] if block.elastic else [])] if block else []
+    loadings = block.loadings if block else []
+    return [f"results/{scene.name}/{kind}_{way}.vtu" for kind in kinds for way in loadings]
+
+
 def ladder_groups(scene):
     """Groups of a scene's file that convergence.csv tells of."""
     return [
@@ -93,7 +108,7 @@ def ladder_groups(scene):
 def scene_results(scene):
     """What a scene's part of the report needs."""
     folder = f"results/{scene.name}"
-    files = [f"{folder}/study.nc", f"{folder}/figures"]
+    files = [f"{folder}/study.nc", f"{folder}/figures", *vtk_files(scene)]
     if scene.models and scene.reference:
         files.append(f"{folder}/accuracy.csv")
     if scene.stability:

@@ -4,6 +4,7 @@ from bondcell.collect import collect, collect_convergence, collect_other_loads
 from bondcell.collect_relaxation import collect_methods
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
+from bondcell.specimen_files import collect_specimen
 from bondcell.storage import write_dataset
 from bondcell.study import build_study
 
@@ -16,5 +17,7 @@ with job(f"{snakemake.wildcards.scene}: collect") as log:
     groups = collect_other_loads(*points, files.relaxation)
     groups |= collect_convergence(scene, files.convergence)
     groups |= collect_methods(scene, files.methods)
+    if scene.specimen:
+        result, groups = collect_specimen(scene, files.specimen)
     write_dataset(result, snakemake.output[0], groups)
     log.result = f"{scene.points} points, {len(groups)} groups"

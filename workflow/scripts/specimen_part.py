@@ -1,0 +1,20 @@
+"""One job of a specimen scene, timed on one thread of a machine that does nothing else."""
+
+import os
+from pathlib import Path
+
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+from bondcell import specimen_finite_strain, specimen_relaxation, specimen_solid  # noqa: F401
+from bondcell.batch_files import write_batch
+from bondcell.jobs import job
+from bondcell.planned_scene import planned_scene
+from bondcell.solid import finite_strain, moduli, pocket  # noqa: F401
+from bondcell.specimen_run import run_part
+
+part = Path(snakemake.output[0]).stem.removeprefix("specimen_")
+with job(f"{snakemake.wildcards.scene}: {part}") as log:
+    digest = snakemake.params.digest
+    scene = planned_scene(snakemake.input.scene, specimen_digest=digest)
+    for result, path in zip(run_part(scene, part), snakemake.output, strict=True):
+        write_batch(result, path, digest)
