@@ -47,8 +47,9 @@ def collect_relaxation(
     DataError
         A file is damaged or was computed for other parameters, or points are missing.
     """
-    found = [read_batch(path, scene.relaxation_digest) for path in files]
-    parts = with_equal_terms([batch for batch in found if batch.attrs["load"] == load])
+    # As many terms under every load: the groups of a file share their dimensions.
+    found = with_equal_terms([read_batch(path, scene.relaxation_digest) for path in files])
+    parts = [batch for batch in found if batch.attrs["load"] == load]
     cell, dims = cell_from_study(study)
     shape = cell.shape
     names = result_names(scene)

@@ -80,8 +80,8 @@ def run_methods(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
         On ``(case, method, level)``: ``refinement`` (tolerance, steps a decade, nodes of the
         contour), ``error`` (largest relative one over the times, against the exact series of a
         discretisation of tolerance `TRUTH`), ``seconds`` (set-up included, median of repeats),
-        ``dof``, ``status``, and ``curve`` on ``(..., time)``. On ``case``: ``load``, ``bc``,
-        ``unit``, ``reference_error``.
+        ``dof``, ``status``, and ``curve`` on ``(..., compared_time)``. On ``case``: ``load``,
+        ``bc``, ``unit``, ``reference_error``.
     """
     block = scene.prony
     assert block is not None
@@ -175,8 +175,16 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
     unit = STIFFNESS_UNITS[problem.load]
     variables |= {
         "status": (dims, status, cf_flag_attributes()),
-        "curve": ((*dims, "time"), curves, {"units": unit, "long_name": "stiffness after a step"}),
-        "truth": ("time", curve, {"units": unit, "long_name": "what the others are compared with"}),
+        "curve": (
+            (*dims, "compared_time"),
+            curves,
+            {"units": unit, "long_name": "stiffness after a step"},
+        ),
+        "truth": (
+            "compared_time",
+            curve,
+            {"units": unit, "long_name": "what the others are compared with"},
+        ),
         "reference_error": ((), truth.error_estimate, _ATTRIBUTES["reference_error"]),
         "convention": ((), problem.matrix.convention, {"long_name": "what relaxes"}),
         "load": ((), problem.load, {"long_name": "load"}),
@@ -186,7 +194,7 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
     coords = {
         "method": ("method", list(METHODS), {"long_name": "way to K(t)"}),
         "level": ("level", np.arange(levels), {"long_name": "refinement, from coarse to fine"}),
-        "time": ("time", problem.times, {"units": "s", "long_name": "time since the step"}),
+        "compared_time": ("compared_time", problem.times, _TIME),
     }
     return xr.Dataset(variables, coords)
 
@@ -203,6 +211,8 @@ def _timed(run: _Run, repeats: int) -> tuple[FloatArray, int, float]:
         seconds.append(clock.perf_counter() - started)
     return values, dof, median(seconds)
 
+
+_TIME = {"units": "s", "long_name": "time since the step"}
 
 _ATTRIBUTES = {
     "refinement": {"units": "1", "long_name": "tolerance, steps a decade, or nodes"},

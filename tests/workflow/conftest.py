@@ -11,6 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from bondcell.sources import script_sources
+
 ROOT = Path(__file__).parents[2]
 
 PLAIN = """\
@@ -103,6 +105,24 @@ class Workspace:
             script = file.name.split(".")[1] if is_script else "snakemake"
             loaded.setdefault(script, set()).update(json.loads(file.read_text()))
         return loaded
+
+    def scripts(self) -> list[Path]:
+        """The workflow's scripts."""
+        return sorted((self.folder / "workflow/scripts").glob("*.py"))
+
+    def undeclared(self, script: Path, modules: dict[str, set[str]]) -> set[tuple[str, ...]]:
+        """Files of the package that a script's jobs loaded, but the models, and it does not say."""
+        package = self.folder / "src/bondcell"
+        declared = {
+            path.parts[path.parts.index("bondcell") + 1 :] for path in script_sources(script)
+        }
+        names = {name for name in modules[script.stem] if name.startswith("bondcell.")}
+        paths = {package.joinpath(*name.split(".")[1:]) for name in names}
+        files = {
+            path / "__init__.py" if path.is_dir() else path.with_suffix(".py") for path in paths
+        }
+        loaded = {file.relative_to(package).parts for file in files}
+        return {parts for parts in loaded - declared if parts[0] != "models"}
 
     def plans(self, edits: dict[str, tuple[str, str, str]]) -> dict[str, dict[str, int]]:
         """Name of an edit -> rules that it would make run, and how often."""

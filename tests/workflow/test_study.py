@@ -6,7 +6,6 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from bondcell.sources import script_sources
 from bondcell.storage import read_dataset
 
 HEAVY = {"gmsh", "skfem", "matplotlib", "jinja2"}
@@ -22,6 +21,8 @@ def test_scene_without_reference_runs_no_reference_and_imports_none(plain_run):
     assert done.returncode == 0, done.stdout
     assert set(modules) == {"snakemake", "collect", "figures"}
     assert not packages(modules["collect"]) & HEAVY
+    assert not [name for found in modules.values() for name in found if "prony." in name]
+    assert "time" not in read_dataset(workspace / "results/plain/study.nc").dims
     assert packages(modules["figures"]) & HEAVY == {"matplotlib"}
     written = sorted(path.name for path in (workspace / "results/plain").iterdir())
     assert written == ["figures", "study.nc"]
@@ -77,20 +78,19 @@ def test_sources_of_a_rule_are_what_its_jobs_loaded(full_run):
     them depends on them.
     """
     workspace, _, modules = full_run
-    package = workspace / "src/bondcell"
-    for script in (workspace / "workflow/scripts").glob("*.py"):
-        if script.stem in ("analytic", "surrogate"):  # these scenes need no such job
-            continue
-        declared = {
-            path.parts[path.parts.index("bondcell") + 1 :] for path in script_sources(script)
-        }
-        names = {name for name in modules[script.stem] if name.startswith("bondcell.")}
-        paths = {package.joinpath(*name.split(".")[1:]) for name in names}
-        files = {
-            path / "__init__.py" if path.is_dir() else path.with_suffix(".py") for path in paths
-        }
-        loaded = {file.relative_to(package).parts for file in files}
-        assert {parts for parts in loaded - declared if parts[0] != "models"} == set(), script
+    ran = [path for path in workspace.scripts() if path.stem in modules]
+    assert {path.stem for path in ran} >= {
+        "accuracy",
+        "collect",
+        "convergence",
+        "convergence_table",
+        "figures",
+        "reference",
+        "report",
+        "stability",
+    }
+    for script in ran:
+        assert workspace.undeclared(script, modules) == set(), script
 
 
 def test_file_of_a_scene(workspace):
