@@ -177,11 +177,10 @@ def draw_errors(study: xr.Dataset, name: str = "error_over_time") -> Drawing:
     axis, panels = _error_panels(study)
     figure, grid = _panels(len(panels), 5.6, rows=2)
     time = here["time"].values[1:]
-    sentences = []
+    sentences, top = [], [0.0]
     for column, (index, title) in enumerate(panels):
         upper, lower = grid[0][column], grid[1][column]
         upper.axhline(0, color="#9a9a9a", linewidth=0.8, zorder=1)
-        top = [0.0]
         for position, model in enumerate(analytic_names(study)):
             error = error_over_time(first, model).sel(series=series).isel(index).values
             upper.plot(time, error[1:], label=model_name(model), **line_style(model, position))
