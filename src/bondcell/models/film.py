@@ -8,7 +8,15 @@ from numpy.typing import NDArray
 from bondcell.cell import Cell, FloatArray
 from bondcell.models import film_lateral, film_torsion
 from bondcell.models.film_domain import Geometry, domain
-from bondcell.models.film_energies import Assembly, Energies, gram, minimum, placed, sum_of_grams
+from bondcell.models.film_energies import (
+    Assembly,
+    Energies,
+    gram,
+    least,
+    minimum,
+    placed,
+    sum_of_grams,
+)
 from bondcell.models.film_fields import Fields, fields
 from bondcell.models.film_particles import distances, energy, traces
 from bondcell.models.model import Model, Springs
@@ -91,7 +99,7 @@ def normal(cell: Cell) -> Springs:
     scale = np.maximum(flat.radius_i, flat.radius_j)
     outer = flat.cylinder_radius / scale
     gap = np.minimum(flat.gap / scale, LONGEST * outer)
-    value, loss = minimum(flat, gap, energies)
+    value, loss = minimum(flat, gap, energies, least)
     value /= 1 + value * (flat.gap / scale - gap) / (np.pi * outer**2)
     return _springs(cell, value * flat.young_m * scale, loss)
 
@@ -130,7 +138,7 @@ def torsion(cell: Cell) -> Springs:
     scale = np.maximum(flat.radius_i, flat.radius_j)
     outer = flat.cylinder_radius / scale
     gap = np.minimum(flat.gap / scale, LONGEST * outer)
-    value, loss = minimum(flat, gap, film_torsion.energies)
+    value, loss = minimum(flat, gap, film_torsion.energies, least)
     bar = np.pi * outer**4 / (4 * (1 + flat.poisson_m))
     value /= 1 + value * (flat.gap / scale - gap) / bar
     return _springs(cell, value * flat.young_m * scale**3, loss)
@@ -210,8 +218,8 @@ def _lateral(cell: Cell, assemble: Assembly, power: int) -> Springs:
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)
-        least, loss[short] = minimum(own, own.gap / scale, assemble, mirrors=False)
-        value[short] = least * own.young_m * scale**power
+        found, loss[short] = minimum(own, own.gap / scale, assemble, least, mirrors=False)
+        value[short] = found * own.young_m * scale**power
     return _springs(cell, value, loss)
 
 

@@ -88,15 +88,22 @@ class Domain:
     span: Jet
 
 
-def domain(geometry: Geometry) -> Domain:
+def domain(geometry: Geometry, radial_points: int | None = None) -> Domain:
     """Points, weights and coordinates.
+
+    Parameters
+    ----------
+    geometry
+        Cells of one kind.
+    radial_points
+        Gauss points across a panel, `RADIAL_POINTS` if not given.
 
     Notes
     -----
     ``above = 2 phi z/(phi + z + sqrt(phi^2 + z^2))`` vanishes with phi and with z, and equals phi
     to first order at the sphere: Rvachev's conjunction.
     """
-    radius, measure = _radii(geometry)
+    radius, measure = _radii(geometry, radial_points or RADIAL_POINTS)
     low, up = (_surface(radius, own) for own in (geometry.radius_i, geometry.radius_j))
     thickness = geometry.gap + low.dip + up.dip
     # Where a sphere meets its end plane inside the cell, fields have a corner.
@@ -186,20 +193,20 @@ def graded_angles(start: FloatArray) -> FloatArray:
     return np.concatenate((np.zeros_like(start), start * growth), axis=-1)
 
 
-def _radii(geometry: Geometry) -> tuple[FloatArray, FloatArray]:
+def _radii(geometry: Geometry, points: int) -> tuple[FloatArray, FloatArray]:
     """Radii of the lines and ``dr``: over the smaller sphere, beside it, over the annulus."""
     small = np.minimum(geometry.radius_i, geometry.radius_j)
     large = np.maximum(geometry.radius_i, geometry.radius_j)
-    angle, width = gauss(graded_angles(geometry.film_radius / small), RADIAL_POINTS)
+    angle, width = gauss(graded_angles(geometry.film_radius / small), points)
     radii, widths = [small * np.sin(angle)], [small * np.cos(angle) * width]
     steps = np.linspace(0, 1, OUTER_PANELS + 1) ** 2
     if np.any(large > small):
         rim = np.arcsin(small / large)
-        angle, width = gauss(rim + (np.pi / 2 - rim) * steps, RADIAL_POINTS)
+        angle, width = gauss(rim + (np.pi / 2 - rim) * steps, points)
         radii.append(large * np.sin(angle))
         widths.append(large * np.cos(angle) * width)
     if np.any(geometry.outer > large):
-        radius, width = gauss(large + (geometry.outer - large) * steps, RADIAL_POINTS)
+        radius, width = gauss(large + (geometry.outer - large) * steps, points)
         radii.append(radius)
         widths.append(width)
     return np.concatenate(radii, axis=-1), np.concatenate(widths, axis=-1)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,8 @@ class Energies:
     moved: NDArray[np.bool_]
 
 
+Forms = TypeVar("Forms")
+
 Assembly = Callable[[Geometry, FloatArray, FloatArray], Energies]
 """Energies of cells of one kind, from geometry and Poisson's ratios of the particles (cells, 1)."""
 
@@ -79,7 +82,12 @@ def placed(
 
 
 def minimum(
-    cell: Cell, gap: FloatArray, assemble: Assembly, mirrors: bool = True
+    cell: Cell,
+    gap: FloatArray,
+    assemble: Callable[[Geometry, FloatArray, FloatArray], Forms],
+    solve: Callable[[Forms, int, Cell], tuple[FloatArray, FloatArray]],
+    mirrors: bool = True,
+    batch: int = BATCH,
 ) -> tuple[FloatArray, FloatArray]:
     """Least energy, twice, over ``E_m`` and powers of the largest radius, and its loss.
 
@@ -90,9 +98,13 @@ def minimum(
     gap
         The gap to use instead of the cell's, over the largest radius.
     assemble
-        The load's energies.
+        The load's quadratic forms.
+    solve
+        Energies and losses of points from the forms and the position of their geometry in them.
     mirrors
         Whether the load of a pair of equal particles has mirror symmetry.
+    batch
+        Geometries to assemble at once.
 
     Returns
     -------
@@ -107,14 +119,14 @@ def minimum(
     order = np.argsort(place, kind="stable")
     starts = np.searchsorted(place[order], np.arange(own.shape[1] + 1))
     value, loss = np.empty(gap.shape), np.empty(gap.shape)
-    for first, last in _batches(own[:KINDS]):
+    for first, last in _batches(own[:KINDS], batch):
         part = own[:, first:last]
         radius_i, radius_j, width, edge, nu_i, nu_j = part[KINDS:, :, None]
         geometry = Geometry(radius_i, radius_j, width, edge, mirrored=bool(part[0, 0]))
         forms = assemble(geometry, nu_i, nu_j)
         for k in range(last - first):
             points = order[starts[first + k] : starts[first + k + 1]]
-            value[points], loss[points] = _energies(forms, k, cell.take(points))
+            value[points], loss[points] = solve(forms, k, cell.take(points))
     return value, loss
 
 
@@ -131,18 +143,18 @@ def _keys(cell: Cell, scale: FloatArray, gap: FloatArray) -> FloatArray:
     return np.stack([*kind, radius_i, radius_j, gap, outer, cell.poisson_i, cell.poisson_j])
 
 
-def _batches(kinds: FloatArray) -> list[tuple[int, int]]:
-    """Runs of at most `BATCH` columns of one kind."""
+def _batches(kinds: FloatArray, batch: int) -> list[tuple[int, int]]:
+    """Runs of at most ``batch`` columns of one kind."""
     change = np.flatnonzero(np.any(np.diff(kinds, axis=1) != 0, axis=0)) + 1
     borders = [0, *change.tolist(), kinds.shape[1]]
     return [
-        (k, min(k + BATCH, end))
+        (k, min(k + batch, end))
         for start, end in pairwise(borders)
-        for k in range(start, end, BATCH)
+        for k in range(start, end, batch)
     ]
 
 
-def _energies(forms: Energies, k: int, cell: Cell) -> tuple[FloatArray, FloatArray]:
+def least(forms: Energies, k: int, cell: Cell) -> tuple[FloatArray, FloatArray]:
     """Least energies of points on geometry k, and their loss."""
     rigid = np.isinf(np.stack([cell.young_i, cell.young_j]))
     value, loss = np.empty(cell.young_m.size), np.empty(cell.young_m.size)

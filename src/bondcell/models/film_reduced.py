@@ -63,7 +63,7 @@ class Basis:
         for factors, matrix in zip(points, combined(self.forms, points), strict=True):
             self.solutions.append((factors, solved(matrix, ridge=0.0)))
         self.solutions.sort(key=lambda one: -float(one[0][1:].sum()))
-        size = np.sqrt(self.forms[0].diagonal()[1:])
+        size = np.sqrt(self.forms.sum(axis=0).diagonal()[1:])
         rows = np.stack([one.fields[1:] * size for _, one in self.solutions])
         rows /= np.linalg.norm(rows, axis=1, keepdims=True)
         triangle = np.asarray(np.linalg.qr(rows.T, mode="r"))
