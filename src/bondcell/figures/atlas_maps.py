@@ -13,7 +13,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.patches import Patch, Rectangle
 
 from bondcell.atlas import is_formula, valid_everywhere, worst_errors
 from bondcell.figures.style import LIGHT, Drawing, marker_style, mathtext, new_figure
@@ -50,17 +50,16 @@ def atlas_maps(loads: Mapping[str, xr.Dataset]) -> Iterator[Drawing]:
 
 def _error_maps(load: str, study: xr.Dataset) -> Drawing:
     names, columns = analytic_names(study), shown_poisson(study)
-    figure, grid = _panels(len(names), columns, study, [model_name(name) for name in names], 1.12)
+    figure, rows = _rows([model_name(name) for name in names], columns, study, 1.12)
     colours, norm = _colours()
-    for row, name in enumerate(names):
+    for axes, name in zip(rows, names, strict=True):
         error, valid = np.abs(worst_errors(study, name)), valid_everywhere(study, name)
-        for axes, column in zip(grid[row], columns, strict=True):
-            axes.pcolormesh(error[:, :, column].T, cmap=colours, norm=norm, rasterized=True)
-            axes.patch.set(facecolor="#f2f2f2", hatch="////", edgecolor="#9a9a9a", linewidth=0)
-            axes.add_collection(_outline(valid[:, :, column].T))
+        for place, column in enumerate(columns):
+            _draw(axes, place, error[:, :, column], colours, norm)
+            axes.add_collection(_outline(valid[:, :, column].T, _left(study, place)))
     bar = figure.colorbar(
         ScalarMappable(norm, colours),
-        ax=grid,
+        ax=rows,
         location="top",
         extend="both",
         ticks=BOUNDS,
@@ -92,61 +91,83 @@ def shown_poisson(study: xr.Dataset) -> list[int]:
     return sorted({int(np.abs(values - wanted).argmin()) for wanted in POISSON_SHOWN})
 
 
-def _panels(
-    rows: int, columns: list[int], study: xr.Dataset, titles: list[str], height: float
-) -> tuple[Figure, Grid]:
-    figure = new_figure(0.9 + 1.55 * len(columns), 1.3 + height * rows)
-    grid = figure.subplots(rows, len(columns), sharex=True, sharey=True, squeeze=False)
-    for axes, column in zip(grid[0], columns, strict=True):
+def _rows(
+    titles: list[str], columns: list[int], study: xr.Dataset, height: float
+) -> tuple[Figure, list[Axes]]:
+    """A strip of maps for each title; the maps of a strip share one pair of axes."""
+    figure = new_figure(0.9 + 1.55 * len(columns), 1.3 + height * len(titles))
+    rows = list(figure.subplots(len(titles), 1, sharex=True, squeeze=False)[:, 0])
+    for place, column in enumerate(columns):
         value = number(study[POISSON].values[column])
-        axes.set_title(f"{mathtext(symbol(POISSON))} = {value}", fontsize=8)
-    for axes, title in zip(grid[:, 0], titles, strict=True):
-        axes.annotate(
+        title = f"{mathtext(symbol(POISSON))} = {value}"
+        middle = _left(study, place) + study.sizes[GAP] / 2
+        rows[0].annotate(
             title,
-            (0, 0.5),
-            (-38, 0),
-            xycoords="axes fraction",
+            (middle, study.sizes[RATIO]),
+            (0, 4),
             textcoords="offset points",
-            rotation=90,
-            va="center",
             ha="center",
             fontsize=8,
         )
-    for axes in grid.ravel():
-        _ticks(axes, study)
+    for axes, title in zip(rows, titles, strict=True):
+        axes.set_ylabel(title, fontsize=8)
+        _scales(axes, study, len(columns))
     figure.supxlabel(f"{meaning(GAP)} {mathtext(symbol(GAP))}", fontsize=9)
     figure.supylabel(f"{meaning(RATIO)} {mathtext(symbol(RATIO))}", fontsize=9)
-    return figure, grid
+    return figure, rows
 
 
-def _ticks(axes: Axes, study: xr.Dataset) -> None:
+def _left(study: xr.Dataset, place: int) -> float:
+    """Where the map at a place of its strip begins."""
+    return float(place * 1.1 * study.sizes[GAP])
+
+
+def _draw(axes: Axes, place: int, values: Grid, colours: Colormap, norm: BoundaryNorm) -> None:
+    """One map, values of shape (gaps, ratios); hatched where there is none."""
+    gaps, ratios = values.shape
+    left = place * 1.1 * gaps
+    frame = Rectangle((left, 0), gaps, ratios, facecolor="#f2f2f2", edgecolor="#9a9a9a")
+    frame.set(hatch="////", linewidth=0.4)
+    axes.add_patch(frame)
+    edges = left + np.arange(gaps + 1), np.arange(ratios + 1)
+    axes.pcolormesh(*edges, values.T, cmap=colours, norm=norm, rasterized=True)
+
+
+def _scales(axes: Axes, study: xr.Dataset, maps: int) -> None:
     """Points stand at equal distances; every second power of ten has a label, and rigid."""
-    for axis, name in ((axes.xaxis, GAP), (axes.yaxis, RATIO)):
-        values = study[name].values
-        powers = np.log10(values, where=np.isfinite(values), out=np.full(values.shape, 0.5))
-        even = np.isclose(powers % 2, 0) | np.isclose(powers % 2, 2)
-        rigid = np.isinf(values)
-        crowded = np.roll(rigid, -1) | np.roll(rigid, -2)
-        at = [int(k) for k in np.flatnonzero((even & ~crowded) | rigid)]
-        labels = [_power(values[k]) for k in at]
-        axis.set_ticks([k + 0.5 for k in at], labels)
+    at, labels = _labelled(study[GAP].values)
+    places = [_left(study, place) + k + 0.5 for place in range(maps) for k in at]
+    axes.xaxis.set_ticks(places, labels * maps)
+    at, labels = _labelled(study[RATIO].values)
+    axes.yaxis.set_ticks([k + 0.5 for k in at], labels)
     axes.tick_params(labelsize=6.5, length=2)
     axes.grid(visible=False)
-    axes.set_xlim(0, study.sizes[GAP])
-    axes.set_ylim(0, study.sizes[RATIO])
+    for spine in axes.spines.values():
+        spine.set_visible(False)
+    axes.set_xlim(-0.3, _left(study, maps - 1) + study.sizes[GAP] + 0.3)
+    axes.set_ylim(-0.2, study.sizes[RATIO] + 0.2)
+
+
+def _labelled(values: Grid) -> tuple[list[int], list[str]]:
+    powers = np.log10(values, where=np.isfinite(values), out=np.full(values.shape, 0.5))
+    even = np.isclose(powers % 2, 0) | np.isclose(powers % 2, 2)
+    rigid = np.isinf(values)
+    crowded = np.roll(rigid, -1) | np.roll(rigid, -2)
+    at = [int(k) for k in np.flatnonzero((even & ~crowded) | rigid)]
+    return at, [_power(values[k]) for k in at]
 
 
 def _power(value: float) -> str:
     return "rigid" if np.isinf(value) else f"$10^{{{round(np.log10(value))}}}$"
 
 
-def _outline(mask: Grid) -> LineCollection:
+def _outline(mask: Grid, left: float) -> LineCollection:
     """Border between points that are inside a range and those that are not."""
     padded = np.pad(mask, 1)
     upright = np.argwhere(padded[1:-1, 1:] != padded[1:-1, :-1])
     level = np.argwhere(padded[1:, 1:-1] != padded[:-1, 1:-1])
-    segments = [[(x, y), (x, y + 1)] for y, x in upright]
-    segments += [[(x, y), (x + 1, y)] for y, x in level]
+    segments = [[(left + x, y), (left + x, y + 1)] for y, x in upright]
+    segments += [[(left + x, y), (left + x + 1, y)] for y, x in level]
     return LineCollection(segments, colors="black", linewidths=1.1, clip_on=False, zorder=3)
 
 
@@ -201,16 +222,14 @@ def best_formula(study: xr.Dataset, wanted: float) -> tuple[list[str], Grid]:
 def _best_maps(loads: Mapping[str, xr.Dataset], wanted: float) -> Drawing:
     first = next(iter(loads.values()))
     columns = shown_poisson(first)
-    figure, grid = _panels(len(loads), columns, first, list(loads), 1.25)
+    figure, rows = _rows(list(loads), columns, first, 1.25)
     found: dict[str, Any] = {}
-    for row, study in zip(grid, loads.values(), strict=True):
+    for axes, study in zip(rows, loads.values(), strict=True):
         names, best = best_formula(study, wanted)
         palette = [marker_style(name, k)["color"] for k, name in enumerate(names)] + [LIGHT]
-        colours = ListedColormap(palette)
-        for axes, column in zip(row, columns, strict=True):
-            shown = best[:, :, column].T
-            norm = BoundaryNorm(np.arange(len(palette) + 1) - 0.5, len(palette))
-            axes.pcolormesh(shown, cmap=colours, norm=norm, rasterized=True)
+        norm = BoundaryNorm(np.arange(len(palette) + 1) - 0.5, len(palette))
+        for place, column in enumerate(columns):
+            _draw(axes, place, best[:, :, column], ListedColormap(palette), norm)
         for k in np.unique(best[:, :, columns]):
             label = model_name(names[k]) if k < len(names) else "no formula"
             found[label] = Patch(facecolor=palette[k])

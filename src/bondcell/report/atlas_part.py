@@ -19,6 +19,7 @@ from bondcell.atlas import (
     valid_everywhere,
     worst_errors,
 )
+from bondcell.models import MODELS
 from bondcell.report.findings import Finding
 from bondcell.report.tables import Table
 from bondcell.result_view import REFERENCE, analytic_names
@@ -93,7 +94,7 @@ def _successor(table: pd.DataFrame) -> Iterator[Finding]:
 
 def _interpolant(table: pd.DataFrame) -> Iterator[Finding]:
     rows = _whole(table)
-    rows = rows[[not is_formula(name) and name != REFERENCE for name in rows["model"]]]
+    rows = rows[[name in MODELS and MODELS[name].from_reference for name in rows["model"]]]
     for name, group in rows[rows["points"] > 0].groupby("model", sort=False):
         phrase = model_phrase(str(name))
         yield Finding(
