@@ -20,7 +20,7 @@ from skfem.element import DiscreteField, ElementLinePp, ElementQuadP
 from bondcell.cell import FloatArray
 from bondcell.fem.curved_mapping import CurvedMapping
 
-EXTRA_POINTS = 3
+EXTRA_POINTS = 2
 """Gauss points a direction beyond the order: curved geometry and 1/r are not polynomials."""
 
 
