@@ -19,9 +19,6 @@ from bondcell.wording import listed, model_phrase, number, percent, quantity
 
 REFERENCE = "fe"
 
-INTERVALS = ("bounds",)
-"""Models that give an interval: listed, but never the choice."""
-
 ERRORS = (DEFAULT_TOLERANCE, 1.0)
 """Closed interval of the errors that may be wanted."""
 
@@ -171,7 +168,7 @@ def advise_cell(cell: Cell, error: float, load: str, measure: bool = False) -> A
         candidates, source = _measured(shipped, cell, load), "measured"
     else:
         candidates, source = _from_map(shipped, cell, load), "none" if reasons else "map"
-    serving = [c for c in candidates if c.serves(error) and c.model not in INTERVALS]
+    serving = [found for found in candidates if found.serves(error)]
     chosen = serving[0] if serving else next(c for c in candidates if c.model == REFERENCE)
     formulas = [found.model for found in serving if found.is_formula]
     return Advice(

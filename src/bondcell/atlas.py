@@ -48,9 +48,6 @@ AXES = tuple(BANDS)
 WANTED = (0.3, 0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4)
 """Errors for which the cheapest model is looked up."""
 
-INTERVALS = ("bounds",)
-"""Models that give an interval: its middle is no estimate that one would choose."""
-
 ROUNDING = 1e-9
 """A bound of a band holds in spite of round-off in a swept value."""
 
@@ -210,7 +207,6 @@ def best_models(table: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for key, group in table.groupby(["load", "gaps", "particles", "poisson"], sort=False):
         whole = group[(group["left_out"] == 0) & (group["points_outside"] == 0)]
-        whole = whole[~whole["model"].isin(INTERVALS)]
         ordered = whole.sort_values("seconds")
         formulas = ordered[[is_formula(name) for name in ordered["model"]]]
         for wanted in WANTED:
@@ -221,15 +217,14 @@ def best_models(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def is_formula(name: str) -> bool:
-    """Whether a model estimates the stiffness without the reference.
+    """Whether a model is made without the reference.
 
     Examples
     --------
-    >>> [is_formula(name) for name in ("fsi", "film", "bounds", "surrogate", "fe")]
-    [True, True, False, False, False]
+    >>> [is_formula(name) for name in ("fsi", "film", "surrogate", "fe")]
+    [True, True, False, False]
     """
-    model = MODELS[name]
-    return not (model.is_reference or model.from_reference or name in INTERVALS)
+    return not (MODELS[name].is_reference or MODELS[name].from_reference)
 
 
 def _first(ordered: pd.DataFrame, wanted: float, name: str, prefix: str) -> dict[str, Any]:
