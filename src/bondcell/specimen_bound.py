@@ -1,4 +1,4 @@
-"""What no loading can fall below: the printed energies and norms tested against a bound."""
+"""What no loading can fall below: energy over displacement norm."""
 
 from __future__ import annotations
 
@@ -7,21 +7,6 @@ from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.lattice.lattice import Lattice
-
-PRINTED = {"fe": (0.0055, 1.466e-3), "de": (0.0052, 1.357e-3)}
-"""Energy [J] and displacement norm [m] that the paper prints for its two models."""
-
-
-def printed_stiffness(model: str) -> float:
-    """``2 U / n^2`` of the printed pair [N/m], n the norm of the particles' displacements.
-
-    Examples
-    --------
-    >>> round(printed_stiffness("de"))
-    5648
-    """
-    energy, norm = PRINTED[model]
-    return 2 * energy / norm**2
 
 
 def softest(stiffness: FloatArray, translations: NDArray[np.bool_]) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -27,6 +27,8 @@ VARIANTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "lattice_full": ("fe", ("normal", "shear", "pivot", "bending", "torsion")),
 }
 """Lattices: where the bonds come from and which of their springs are used."""
+
+Springs = Callable[[Material, str], Mapping[str, float]]
 
 NEIGHBOURS = 2 * given.GAP
 """Gap up to which spheres are bonded [m]."""
@@ -58,7 +60,11 @@ class SpecimenLattice:
 
 
 def specimen_lattice(
-    variant: str, material: Material, walls: str, triangle: tuple[float, float] | None = None
+    variant: str,
+    material: Material,
+    walls: str,
+    triangle: tuple[float, float] | None = None,
+    springs_of: Springs = bond_springs,
 ) -> SpecimenLattice:
     """Build one of `VARIANTS`.
 
@@ -73,6 +79,8 @@ def specimen_lattice(
     triangle
         ``2 U`` of a triangle of neighbours under dilation and deviator [J], see
         `bondcell.solid.pocket.TriangleEnergies`; for ``lattice_full``.
+    springs_of
+        Gives the springs of a bond; another one may remember what it gave.
 
     Notes
     -----
@@ -86,7 +94,7 @@ def specimen_lattice(
     bottom = np.flatnonzero(packed.on_wall(2))
     if source == "paper":
         return _paper(points, pairs, bottom)
-    springs = bond_springs(material, source)
+    springs = springs_of(material, source)
     own = bonds(pairs, **{name: springs[name] for name in used})
     three = None
     if variant == "lattice_full":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
 import xarray as xr
@@ -13,8 +14,8 @@ from bondcell.lattice import specimen_geometry as given
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
 from bondcell.prony.sampled_bank import sampled_bank
-from bondcell.specimen_bonds import Material
-from bondcell.specimen_lattice import VARIANTS, specimen_lattice
+from bondcell.specimen_bonds import Material, bond_springs
+from bondcell.specimen_lattice import VARIANTS, Springs, specimen_lattice
 from bondcell.specimen_names import LOADINGS, LOWEST, RELAXING
 
 STATES = 4
@@ -75,7 +76,9 @@ def specimen_relaxation(
     state = Relaxing.of(cell, prony, convention)
     _check(state, methods)
     solve = {"fe_rigid": _solid(state, walls, per_gap)} if "fe_rigid" in methods else {}
-    solve |= {name: _lattice(name, walls) for name in methods if name in VARIANTS}
+    # Several lattices take their springs from the same bonds.
+    springs = lru_cache(maxsize=None)(bond_springs)
+    solve |= {name: _lattice(name, walls, springs) for name in methods if name in VARIANTS}
     shape = (len(methods), len(LOADINGS), len(time))
     reaction, errors = np.empty(shape), np.empty(shape[:2])
     for k, name in enumerate(methods):
@@ -135,9 +138,9 @@ def _series(
     return series.relaxation(time).T, error
 
 
-def _lattice(name: str, walls: str) -> Stiffness:
+def _lattice(name: str, walls: str, springs: Springs) -> Stiffness:
     def solve(material: Material) -> FloatArray:
-        own = specimen_lattice(name, material, walls)
+        own = specimen_lattice(name, material, walls, springs_of=springs)
         ways = [np.array(way) * given.DISPLACEMENT for way in LOADINGS.values()]
         return np.array([2 * own.solve(way).energy / given.DISPLACEMENT for way in ways])
 

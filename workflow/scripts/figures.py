@@ -3,10 +3,12 @@
 from pathlib import Path
 
 from bondcell.figures import draw_scene
+from bondcell.figures.specimen import draw_specimen
 from bondcell.jobs import job
 from bondcell.load_groups import read_loads
 from bondcell.planned_scene import planned_scene
 from bondcell.relaxation_names import METHODS
+from bondcell.specimen_view import read_specimen
 from bondcell.storage import read_dataset
 
 with job(f"{snakemake.wildcards.scene}: figures") as log:
@@ -18,5 +20,8 @@ with job(f"{snakemake.wildcards.scene}: figures") as log:
     methods = read_dataset(snakemake.input.study, METHODS) if timed else None
     folder = Path(snakemake.output[0])
     folder.mkdir(parents=True, exist_ok=True)
-    paths = draw_scene(scene, study, convergence, folder, others, methods)
+    if scene.specimen:
+        paths = draw_specimen(read_specimen(snakemake.input.study), folder)
+    else:
+        paths = draw_scene(scene, study, convergence, folder, others, methods)
     log.result = f"{len(paths)} files"

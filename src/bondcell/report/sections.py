@@ -20,10 +20,12 @@ from bondcell.report.relaxation_part import (
     relaxation_lines,
 )
 from bondcell.report.setup_table import Line, setup_lines
+from bondcell.report.specimen_part import specimen_part
 from bondcell.report.stability_part import stability_findings, stability_lines
 from bondcell.report.sweep_findings import sweep_findings
 from bondcell.report.tables import Table, accuracy_lines, influence_lines, value_lines
 from bondcell.result_view import model_names
+from bondcell.specimen_view import read_specimen
 from bondcell.stability import stability_table
 from bondcell.storage import read_dataset
 
@@ -102,6 +104,10 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         relaxing = read_relaxing(folder, loads, with_methods=scene.prony.methods is not None)
         findings += relaxation_findings(relaxing)
         tables += relaxation_lines(relaxing)
+    elif scene.specimen is not None:
+        said, shown = specimen_part(read_specimen(folder / "study.nc"))
+        findings += said
+        tables += shown
     elif scene.models or not scene.stability:
         for load, found in loads.items():
             table = accuracy_table(found)

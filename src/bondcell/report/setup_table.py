@@ -31,6 +31,8 @@ def setup_lines(scene: Scene) -> list[Line]:
     if scene.models:
         lines.append(("models", listed(model_name(name) for name in scene.models)))
     lines += list(_reference(scene))
+    if scene.specimen is not None:
+        return [*lines, *_specimen(given.get("specimen") or {})]
     lines.append(("load" if len(scene.loads) == 1 else "loads", listed(scene.loads)))
     lines += list(_prony(scene))
     lines += list(_convergence(scene, given.get("convergence") or {}))
@@ -42,6 +44,19 @@ def _reference(scene: Scene) -> Iterator[Line]:
         conditions = f"{listed(scene.reference.bc)}; " if "normal" in scene.loads else ""
         tolerance = number(scene.reference.tolerance)
         yield "finite element reference", f"{conditions}relative tolerance {tolerance}"
+
+
+def _specimen(given: Mapping[str, Any]) -> Iterator[Line]:
+    for name, label in (("elastic", "elastic particles"), ("rigid", "rigid particles")):
+        for walls, sizes in (given.get(name) or {}).items():
+            yield f"solid, {label}, {walls} sides: element sizes over the gap", _axis(sizes)
+    for name in ("lattices", "loadings", "walls"):
+        if name in given:
+            yield name, listed(str(word).replace("_", " ") for word in given[name])
+    if "relaxation" in given:
+        series = given["relaxation"]["series"]
+        yield "relaxation times of the matrix", _axis(series["times"])
+        yield "weights", _axis(series["weights"])
 
 
 def _prony(scene: Scene) -> Iterator[Line]:
