@@ -10,7 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import GEOMETRY, Cell
-from bondcell.errors import InputError, MissingLibrary, UnsupportedLoad, Violation
+from bondcell.errors import (
+    BoundExceeded,
+    InputError,
+    MissingLibrary,
+    PointLost,
+    UnsupportedLoad,
+    Violation,
+)
 from bondcell.outputs import PointResults, detail_names
 from bondcell.reference_options import (
     BOUNDARY_CONDITIONS,
@@ -71,7 +78,8 @@ def solve_points(
     """Finite element stiffness at every point of a raveled cell, geometry by geometry.
 
     A geometry that raises costs its own points only: they become NaN with the flag
-    ``solver_failed`` (or ``mesh_failed``), a warning names it, the rest goes on.
+    ``solver_failed`` (``mesh_failed``, or ``limit_exceeded`` where it was bounded), a warning names
+    it, the rest goes on.
 
     Parameters
     ----------
@@ -94,7 +102,7 @@ def solve_points(
     for group in geometry_groups(cell):
         try:
             answer = solve(cell.take(group), load=load, **options)
-        except (InputError, MissingLibrary):
+        except (InputError, MissingLibrary, BoundExceeded):
             raise
         except Exception as error:  # one geometry must not lose the sweep
             _record_failure(results, cell, group, error)
@@ -138,6 +146,8 @@ def _check_tolerance(options: Mapping[str, Any]) -> None:
 
 def _record_failure(results: PointResults, cell: Cell, group: IntArray, error: Exception) -> None:
     status = Status.mesh_failed if "mesh" in type(error).__name__.lower() else Status.solver_failed
+    if isinstance(error, PointLost):
+        status = Status.limit_exceeded
     results.status[group] = status
     where = ", ".join(f"{name}={getattr(cell, name)[group[0]]:.9g} m" for name in GEOMETRY)
     line = f"{status.name}: {group.size} points at {where}: {type(error).__name__}: {error}"

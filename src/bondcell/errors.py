@@ -80,5 +80,13 @@ class CannotWrite(BondcellError):
     """A file cannot be written: no space, no permission; what was there before still is."""
 
 
+class BoundExceeded(BondcellError):
+    """A job needs more memory or time than this attempt has: another one may have it."""
+
+
+class PointLost(BondcellError):
+    """Points need more memory or time than the last attempt has, or ended their process."""
+
+
 class MissingLibrary(BondcellError):
     """A system library that an optional step needs is absent; the message says what to install."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import xarray as xr
 
 from bondcell.batch_results import batch_dataset
@@ -10,6 +12,9 @@ from bondcell.by_geometry import Progress, solve_points
 from bondcell.errors import InputError, Violation
 from bondcell.fem.reference import solve
 from bondcell.inputs import cell_from_study
+
+if TYPE_CHECKING:
+    from bondcell.job_bounds import Bounds
 
 OTHER_LOADS = ("shear", "torsion", "bending")
 """Loads without boundary conditions to choose from."""
@@ -20,6 +25,7 @@ def compute_reference(
     batch: Batch,
     tolerance: float,
     progress: Progress | None = None,
+    bounds: Bounds | None = None,
 ) -> xr.Dataset:
     """Finite element stiffness at the batch's points, geometry by geometry.
 
@@ -34,6 +40,8 @@ def compute_reference(
         Relative error at which refinement stops.
     progress
         Called as ``progress(points_done, points)`` after each geometry.
+    bounds
+        Memory and time that the job has.
     """
     method, _, variant = batch.method.partition("_")
     if method != REFERENCE or not variant:
@@ -43,7 +51,8 @@ def compute_reference(
     options = {"bc": variant} if load == "normal" else {}
     cell, _ = cell_from_study(study)
     positions = batch.points(cell)
+    solver = bounds.bounded(solve) if bounds else solve
     results = solve_points(
-        cell_at(cell, positions), solve, load, progress, tolerance=tolerance, **options
+        cell_at(cell, positions), solver, load, progress, tolerance=tolerance, **options
     )
     return batch_dataset(positions, {batch.method: results}, load)

@@ -1,6 +1,14 @@
 # The jobs that compute. A scene's file is `ancient` because it may change without changing the
 # points: what matters is the digest in the parameters. Linear algebra runs on as many threads as a
 # job claims, which is one; two jobs at once use two cores.
+ATTEMPTS = 3  # a job over its bounds is tried again with twice as much
+
+
+def bound(first):
+    """A resource that doubles with every attempt."""
+    return lambda wildcards, attempt: first * 2 ** (attempt - 1)
+
+
 rule analytic:
     input:
         scene=ancient("params/{scene}.yaml"),
@@ -23,6 +31,12 @@ rule reference:
         sources=sources("reference.py"),
     output:
         "results/{scene}/batches/fe_{bc}_{part}.nc",
+    retries: ATTEMPTS - 1
+    resources:
+        mem_mb=bound(2000),
+        runtime=bound(20),
+        attempt=lambda wildcards, attempt: attempt,
+        attempts=ATTEMPTS,
     params:
         digest=lambda wildcards: scene_of(wildcards).reference_digest,
     message:

@@ -2,16 +2,19 @@
 
 from bondcell.batch_files import describe, write_batch
 from bondcell.batches import Batch
+from bondcell.job_bounds import Bounds
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
 from bondcell.reference_batch import compute_reference
 from bondcell.study import build_study
 
 batch = Batch.parse(f"fe_{snakemake.wildcards.bc}_{snakemake.wildcards.part}")
-with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
+bound = snakemake.resources
+bounds = Bounds(60 * bound.runtime, bound.mem_mb, bound.attempt, bound.attempts)
+with job(f"{snakemake.wildcards.scene}: {batch.name}") as log, bounds.held():
     digest = snakemake.params.digest
     scene = planned_scene(snakemake.input.scene, reference_digest=digest)
     tolerance = scene.reference.tolerance
-    result = compute_reference(build_study(scene), batch, tolerance, log.progress)
+    result = compute_reference(build_study(scene), batch, tolerance, log.progress, bounds)
     write_batch(result, snakemake.output[0], digest)
     log.result = describe(result)
