@@ -3,6 +3,7 @@
 #   snakemake results/<scene>/study.nc     one scene, listed or not
 #   snakemake results/report.html          the report
 #   snakemake results/surrogate.npz        the surrogate's data, see `make surrogate`
+#   snakemake results/accuracy_map.npz     the data of the advice, see `make accuracy-map`
 from snakemake.utils import min_version
 
 min_version("9.5")
