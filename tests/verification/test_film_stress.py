@@ -5,7 +5,7 @@ import pytest
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem import reference
-from bondcell.models import MODELS, film_domain, film_stress
+from bondcell.models import MODELS, film_domain, film_stress, film_stress_torsion
 from bondcell.models.film_domain import Geometry
 from bondcell.models.film_stress import RELATIVE_ERROR, stresses
 from bondcell.models.jets import Jet
@@ -13,8 +13,8 @@ from bondcell.models.jets import Jet
 GEOMETRY = Geometry(*(np.array([[x]]) for x in (1.0, 0.6, 0.1, 1.4)), mirrored=False)
 
 
-def bounds(cell: Cell) -> tuple[FloatArray, FloatArray, FloatArray]:
-    springs = MODELS["bounds"].loads["normal"](cell)
+def bounds(cell: Cell, load: str = "normal") -> tuple[FloatArray, FloatArray, FloatArray]:
+    springs = MODELS["bounds"].loads[load](cell)
     half = np.broadcast_to(springs.relative_error, cell.shape)
     return springs.parts["lower"], springs.parts["upper"], half
 
@@ -203,3 +203,64 @@ def test_many_materials_or_few() -> None:
     alone = bounds(cell.ravel().take(some))[0]
     assert np.all(together[some] <= alone * (1 + 1e-7))
     assert together[some] == pytest.approx(alone, rel=1.1e-5)
+
+
+class TestTorsion:
+    def test_equal_pairs(self) -> None:
+        cell = equal_pairs(40, seed=45)
+        lower, upper, half = bounds(cell, "torsion")
+        exact = MODELS["surrogate"].loads["torsion"](cell).stiffness
+        assert np.all(lower <= exact * (1 + 4e-5))
+        assert np.all(exact * (1 - 4e-5) <= upper)
+        assert half.max() < 4e-3
+
+    def test_unequal_pairs(self) -> None:
+        cell = unequal_pairs(6, seed=46)
+        parts = [
+            reference.solve(cell.ravel().take([k]), load="torsion", tolerance=1e-5)
+            for k in range(6)
+        ]
+        exact = np.concatenate([part.stiffness for part in parts])
+        lower, upper, half = bounds(cell, "torsion")
+        assert np.all(lower <= exact)
+        assert np.all(exact <= upper)
+        assert np.median(half) < 5e-3
+
+    def test_stresses_balance_themselves(self) -> None:
+        """``(r^2 s_rt)_r/r^2 + (s_zt)_z = 0``."""
+
+        def at(r: float, z: float) -> FloatArray:
+            x, y = Jet.variables(np.array([r]), np.array([z]))
+            return film_stress_torsion._shear((x * x + y).log() * y, x.value)[:, 0]
+
+        r, z, step = 0.7, 0.4, 1e-5
+        by_r = (at(r + step, z) - at(r - step, z)) / (2 * step)
+        by_z = (at(r, z + step) - at(r, z - step)) / (2 * step)
+        assert by_r[0] + 2 * at(r, z)[0] / r + by_z[1] == pytest.approx(0, abs=1e-8)
+        assert abs(by_z[1]) > 0.1
+
+    def test_a_homogeneous_cylinder_is_exact(self) -> None:
+        cell = Cell.from_values(
+            radius_i=1.0,
+            radius_j=[1.0, 0.4],
+            gap=0.05,
+            young_i=1.0,
+            young_m=1.0,
+            cylinder_radius=1.3,
+            poisson_i=0.25,
+            poisson_m=0.25,
+        )
+        lower, _, _ = bounds(cell, "torsion")
+        exact = np.pi / 2 * 1.3**4 / 2.5 / cell.length
+        assert np.all(lower <= exact)
+        assert lower == pytest.approx(exact, rel=1.1 * RELATIVE_ERROR)
+
+    def test_quadrature(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        cells = (equal_pairs(4, seed=47), unequal_pairs(3, seed=48))
+        usual = [bounds(cell, "torsion")[0] for cell in cells]
+        monkeypatch.setattr(film_stress_torsion, "RADIAL_POINTS", 14)
+        monkeypatch.setattr(film_domain, "AXIAL_POINTS", 12)
+        monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
+        monkeypatch.setattr(film_stress, "DEPTH_POINTS", 16)
+        for value, cell in zip(usual, cells, strict=True):
+            assert value == pytest.approx(bounds(cell, "torsion")[0], rel=RELATIVE_ERROR)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models import film, film_stress, generatrix
+from bondcell.models import film, film_stress, film_stress_torsion, generatrix
 from bondcell.models.model import Model, Springs
 
 
@@ -45,25 +47,32 @@ def normal(cell: Cell) -> Springs:
     >>> {name: float(part.round(-1)) for name, part in normal(cell).parts.items()}
     {'lower': 87190.0, 'upper': 87250.0}
     """
-    lines = generatrix.normal(cell)
+    return _between(cell, generatrix.normal(cell), film_stress.stiffness, film.normal(cell), 1)
+
+
+def torsion(cell: Cell) -> Springs:
+    """Interval that holds the stiffness against torsion, as `normal` does for the normal load."""
+    stress = film_stress_torsion.stiffness
+    return _between(cell, generatrix.torsion(cell), stress, film.torsion(cell), 3)
+
+
+def _between(
+    cell: Cell,
+    lines: Springs,
+    stress: Callable[[Cell, FloatArray], FloatArray],
+    above: Springs,
+    power: int,
+) -> Springs:
+    """The interval; a stiffness of trial stresses is over ``E_m`` and a power of the radius."""
     lower = np.array(lines.stiffness * (1 - lines.relative_error)).ravel()
     flat = cell.ravel()
     short = np.flatnonzero(flat.gap <= film.LONGEST * flat.cylinder_radius)
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)
-        stress = film_stress.stiffness(own, own.gap / scale) * own.young_m * scale
-        lower[short] = np.maximum(lower[short], stress * (1 - film_stress.RELATIVE_ERROR))
-    return _between(cell, lower.reshape(cell.shape), film.normal(cell))
-
-
-def torsion(cell: Cell) -> Springs:
-    """Interval that holds the stiffness against torsion, as `normal` does for the normal load."""
-    lines = generatrix.torsion(cell)
-    return _between(cell, lines.stiffness * (1 - lines.relative_error), film.torsion(cell))
-
-
-def _between(cell: Cell, lower: FloatArray, above: Springs) -> Springs:
+        found = stress(own, own.gap / scale) * own.young_m * scale**power
+        lower[short] = np.maximum(lower[short], found * (1 - film_stress.RELATIVE_ERROR))
+    lower = lower.reshape(cell.shape)
     upper = above.stiffness * (1 + above.relative_error)
     middle = (lower + upper) / 2
     half = (upper - lower) / (2 * middle)

@@ -165,11 +165,12 @@ def _forms(stress: FloatArray, weights: FloatArray) -> FloatArray:
     return np.stack([sum_of_grams(stress), gram(trace.swapaxes(0, 1))])
 
 
-def _freed(r: Jet, geometry: Geometry) -> Jet:
+def freed(r: Jet, geometry: Geometry) -> Jet:
+    """``R_c^2 - r^2``, which frees the sides."""
     return geometry.outer**2 - r * r
 
 
-def _scaled(value: Jet, small: FloatArray, largest: FloatArray | float, count: int) -> Jet:
+def scaled(value: Jet, small: FloatArray, largest: FloatArray | float, count: int) -> Jet:
     """Legendre polynomials of the logarithm of ``value + small``, value from 0 to the largest."""
     low, high = np.log(small), np.log(largest + small)
     x = ((value + small).log() - low) * (2 / (high - low)) - 1.0
@@ -179,8 +180,8 @@ def _scaled(value: Jet, small: FloatArray, largest: FloatArray | float, count: i
 
 def _lines(r: Jet, geometry: Geometry) -> FloatArray:
     """The uniform stress of a unit force and functions of the radius."""
-    along = _scaled(r * r, geometry.film_radius**2 / 4, geometry.outer**2, LINES)
-    own = along * _freed(r, geometry)
+    along = scaled(r * r, geometry.film_radius**2 / 4, geometry.outer**2, LINES)
+    own = along * freed(r, geometry)
     carried = r * 0.0 + 1 / (2 * np.pi * geometry.outer**2)
     rows = [stresses(carried, None, r.value)[:, None]]
     rows += [stresses(own, None, r.value), stresses(None, own, r.value)]
@@ -193,7 +194,7 @@ def _bubbles(space: Domain, s: Jet, geometry: Geometry) -> FloatArray:
     bubble, odd = s * (1.0 - s), 1.0 - 2.0 * s
     table = legendre(v.value, max(*ODD.values(), *EVEN.values()))
     along = v.compose(table.value, table.first, table.second)
-    base = bubble * _freed(space.r, geometry)
+    base = bubble * freed(space.r, geometry)
     rows = []
     for power, count in (EVEN if geometry.mirrored else EVEN | ODD).items():
         own = base
@@ -208,36 +209,52 @@ def _traces(
     r: Jet, z: Jet, phi: Jet, fade: Jet, radius: FloatArray, geometry: Geometry
 ) -> FloatArray:
     """Force, its slope and radial stress on a sphere, fading with ``fade``."""
-    own = _angular(r, z, radius, geometry, TRACES) * (fade * _freed(r, geometry))
+    own = angular(r, z, radius, geometry, TRACES) * (fade * freed(r, geometry))
     rows = [stresses(own, None, r.value), stresses(own * phi, None, r.value)]
     return np.concatenate([*rows, stresses(None, own, r.value)], axis=1)
 
 
-def _angular(r: Jet, z: Jet, radius: FloatArray, geometry: Geometry, count: int) -> Jet:
+def angular(r: Jet, z: Jet, radius: FloatArray, geometry: Geometry, count: int) -> Jet:
+    """Functions of ``sin(theta)^2`` seen from a particle's centre."""
     square = r * r
     width = geometry.film_radius / (2 * radius)
-    return _scaled(square * (1.0 / (square + z * z)), width**2, 1.0, count)
+    return scaled(square * (1.0 / (square + z * z)), width**2, 1.0, count)
 
 
 def _particle(geometry: Geometry, radius: FloatArray, poisson: FloatArray) -> FloatArray:
     """Twice the complementary energy in a particle for unit Young's modulus."""
+    r, z, weights = particle_points(geometry, radius)
+    phi, fade = inward(r, z, radius)
+    rows = [_lines(r, geometry), _traces(r, z, phi, fade, radius, geometry)]
+    inside = within(r, z, radius, geometry)
+    rows += [stresses(own * phi, None, r.value) for own in inside]
+    rows += [stresses(None, own, r.value) for own in inside]
+    shear, bulk = _forms(np.concatenate(rows, axis=1), weights)
+    return np.asarray((1 + poisson)[..., None] * shear + ((1 - 2 * poisson) / 3)[..., None] * bulk)
+
+
+def particle_points(geometry: Geometry, radius: FloatArray) -> tuple[Jet, Jet, FloatArray]:
+    """``r, z`` in a hemisphere and ``2 pi r dr dz``."""
     borders = graded_angles(0.5 * geometry.film_radius / radius)
     angle, width = gauss(borders, DEPTH_POINTS)
     depth, share = gauss(borders * (2 / np.pi), DEPTH_POINTS)
     grid = (*angle.shape[:-1], angle.shape[-1] * depth.shape[-1])
     distance = (radius * (1 - depth))[:, None, :]
-    r_values = (distance * np.sin(angle)[:, :, None]).reshape(grid)
-    z_values = (distance * np.cos(angle)[:, :, None]).reshape(grid)
+    r = (distance * np.sin(angle)[:, :, None]).reshape(grid)
+    z = (distance * np.cos(angle)[:, :, None]).reshape(grid)
     area = (distance * (radius * share)[:, None, :] * width[:, :, None]).reshape(grid)
-    r, z = Jet.variables(r_values, z_values)
+    return *Jet.variables(r, z), 2 * np.pi * r * area
+
+
+def inward(r: Jet, z: Jet, radius: FloatArray) -> tuple[Jet, Jet]:
+    """``phi``, and ``rho^4 (3 - 2 rho^2)``, which fades to the centre without a slope at 1."""
     square = (r * r + z * z) * (1 / radius**2)
-    phi = (square - 1.0) * (radius / 2)
-    fade = square * square * (3.0 - 2.0 * square)
-    patches = _angular(r, z, radius, geometry, PATCHES) * (fade * phi * _freed(r, geometry))
-    layers = _scaled(-phi, geometry.film_radius / 2, radius / 2, LAYERS)
-    inside = [patches * Jet(layers.parts[:, k : k + 1]) for k in range(LAYERS)]
-    rows = [_lines(r, geometry), _traces(r, z, phi, fade, radius, geometry)]
-    rows += [stresses(own * phi, None, r_values) for own in inside]
-    rows += [stresses(None, own, r_values) for own in inside]
-    shear, bulk = _forms(np.concatenate(rows, axis=1), 2 * np.pi * r_values * area)
-    return np.asarray((1 + poisson)[..., None] * shear + ((1 - 2 * poisson) / 3)[..., None] * bulk)
+    return (square - 1.0) * (radius / 2), square * square * (3.0 - 2.0 * square)
+
+
+def within(r: Jet, z: Jet, radius: FloatArray, geometry: Geometry) -> list[Jet]:
+    """Functions that vanish outside a particle, for every layer those of the angle."""
+    phi, fade = inward(r, z, radius)
+    patches = angular(r, z, radius, geometry, PATCHES) * (fade * phi * freed(r, geometry))
+    layers = scaled(-phi, geometry.film_radius / 2, radius / 2, LAYERS)
+    return [patches * Jet(layers.parts[:, k : k + 1]) for k in range(LAYERS)]
