@@ -305,6 +305,7 @@ def test_study_list():
         "gap_modulus",
         "atlas_coarse",
         "convergence",
+        "specimen",
         "extreme",
         "extreme_loads",
         "prony",

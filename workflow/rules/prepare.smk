@@ -127,6 +127,21 @@ def scene_results(scene):
     return files
 
 
+# Costly scenes that no default study computes: what they left is in the report.
+KEPT = ("specimen_fine",)
+
+
+def kept_scenes():
+    """Names of the costly scenes that have results, with the time of these."""
+    listed = {scene.name for scene in study_scenes()}
+    found = {name: Path(f"results/{name}/study.nc") for name in KEPT if name not in listed}
+    return {
+        name: path.stat().st_mtime
+        for name, path in found.items()
+        if path.is_file() and Path(f"params/{name}.yaml").is_file()
+    }
+
+
 def sources(script):
     """The package's files that a script imports: an edit of one of them makes its jobs run again."""
     return from_here(script_sources(Path(workflow.basedir) / "workflow" / "scripts" / script))

@@ -8,6 +8,7 @@ rule report:
         report("results/report.html", caption="../report/report.rst"),
     params:
         digests=lambda _: {scene.name: scene.digest for scene in study_scenes()},
+        kept=lambda _: kept_scenes(),
     message:
         "report"
     script:

@@ -3,14 +3,22 @@
 from pathlib import Path
 
 from bondcell.jobs import job
+from bondcell.kept_results import was_computed
 from bondcell.planned_scene import planned_scene
 from bondcell.report import write_report
+from bondcell.scene import load_scene
 from bondcell.storage import replacing
 
 with job("report") as log:
     digests = snakemake.params.digests.values()
     files = zip(snakemake.input.scenes, digests, strict=True)
     scenes = [planned_scene(path, digest=digest) for path, digest in files]
+    for name in snakemake.params.kept:
+        kept = load_scene(f"params/{name}.yaml")
+        if was_computed(kept, f"results/{name}/study.nc"):
+            scenes.append(kept)
+        else:
+            log.say(f"{name} was edited since its results were computed: left out")
     with replacing(snakemake.output[0]) as path:
         write_report(Path(snakemake.output[0]).parent, scenes, path)
     log.result = f"{len(scenes)} scenes"

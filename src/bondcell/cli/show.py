@@ -39,6 +39,9 @@ def run(arguments: argparse.Namespace) -> int:
     from bondcell.load_groups import read_loads
 
     study, *others = read_loads(arguments.file).values()
+    if "softest" in study:
+        print(_specimen(study, arguments.file))
+        return 0
     ladders = _convergence(arguments.file)
     _check_content(study, ladders, arguments.file)
     _check_plot(study, arguments)
@@ -50,6 +53,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.plot:
         _draw(study, arguments)
     return 0
+
+
+def _specimen(study: xr.Dataset, path: str) -> str:
+    """Every method of a specimen beside the best known energy."""
+    from bondcell.specimen_view import error_table, read_specimen
+
+    table = error_table(read_specimen(path))
+    return f"{_heading(study, path)}\n\n{table.to_string(index=False, na_rep='-')}"
 
 
 def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> None:

@@ -46,10 +46,12 @@ def draw_modes(study: xr.Dataset) -> Drawing:
         if np.isfinite(right):
             doubt = MJ * right * float(np.nan_to_num(here["reference_error"]))
             line = axes.axvline(MJ * right, color=BLACK, linewidth=1.2)
-            axes.axvspan(MJ * right - doubt, MJ * right + doubt, color=BLACK, alpha=0.12)
+            axes.axvspan(MJ * right - doubt, MJ * right + doubt, color=BLACK, alpha=0.12, zorder=0)
             found["3D solid, with uncertainty"] = line
         axes.set(title=f"{loading} loading", xlabel="energy [mJ]")
         axes.grid(visible=False, axis="y")
+        axes.margins(x=0.06)
+        axes.use_sticky_edges = False
         words.append(f"{loading}: {_words(here, lattices)}")
     panels[0].set_yticks(range(len(lattices)), [NAMES[name] for name in lattices])
     panels[0].invert_yaxis()

@@ -62,7 +62,7 @@ def draw_finite_strain(group: xr.Dataset) -> Drawing:
         colour = METHODS[method]["color"]
         axes.bar(places, 100 * change, 0.92 * width, color=colour, label=NAMES[method])
         told = [
-            f"{percent(value, sign=True)} ({way})"
+            f"{percent(value, sign=True)} ({str(way).replace('-', '−')})"
             for way, value in zip(directions, change, strict=True)
         ]
         words.append(f"{NAMES[method]}: {', '.join(told)}")

@@ -59,15 +59,16 @@ def _positions(axes: Axes, here: xr.Dataset, solid: str, lattice: str) -> str:
     start = centres()[chosen]
     draw_particles(axes, start, facecolor="#eeeeee", edgecolor=GREY, linestyle="--")
     words = []
-    for method, colour in ((solid, _SOLID), (lattice, _LATTICE)):
+    # The wide line below shows on both sides of the narrow one where they agree.
+    for method, colour, width in ((solid, _SOLID, 4.0), (lattice, _LATTICE, 1.2)):
         one = here.sel({"method": method, "particle": list(PAIR)})
         moved, turned = one["displacement"].values, one["rotation"].values
         where = start + MAGNIFIED * moved
-        draw_particles(axes, where, facecolor="none", edgecolor=colour, linewidth=1.4)
+        draw_particles(axes, where, facecolor="none", edgecolor=colour, linewidth=width)
         for place, turn in zip(where, MAGNIFIED * np.nan_to_num(turned), strict=True):
             tip = place + RADIUS * np.array([-np.sin(turn), np.cos(turn)])
-            axes.plot(*(MM * np.array([place, tip])).T, "-", color=colour, linewidth=1.4)
-        axes.plot([], [], "-", color=colour, label=NAMES[method])
+            axes.plot(*(MM * np.array([place, tip])).T, "-", color=colour, linewidth=width)
+        axes.plot([], [], "-", color=colour, linewidth=width, label=NAMES[method])
         told = [
             f"{name} by {quantity(np.linalg.norm(shift), 'm', 3)} and {number(1e3 * turn, 3)} mrad"
             for name, shift, turn in zip(PAIR, moved, turned, strict=True)

@@ -32,7 +32,7 @@ def specimen_lines(results: Results, table: pd.DataFrame) -> list[Table]:
 def _errors(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Table]:
     header = [
         "method",
-        "element / gap",
+        "h / gap",
         "unknowns",
         "time",
         "energy",
@@ -47,10 +47,9 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Table]:
         if np.isfinite(best):
             sure = f", sure to {percent(doubt)}" if np.isfinite(doubt) else ", from one mesh alone"
             caption += (
-                f" Energy errors are against {_millijoule(best)}, the limit of the solid's meshes"
-                f"{sure}; displacement and rotation errors against its finest mesh. Times: "
-                "lattices with the finite elements of their bonds and pockets, the solid without "
-                "its mesh."
+                f" Errors of the energy are to {_millijoule(best)}, the limit of the solid's "
+                f"meshes{sure}; those of displacement and rotation to its finest mesh. Time: "
+                "with the finite elements of bonds and pockets, without the solid's mesh."
             )
         lines = [
             [
@@ -60,8 +59,10 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Table]:
                 quantity(row.seconds, "s", 2),
                 _millijoule(row.energy),
                 percent(row.energy_error, sign=True),
-                percent(row.displacement_error),
-                percent(row.rotation_error),
+                *(
+                    "reference" if error == 0 else percent(error)
+                    for error in (row.displacement_error, row.rotation_error)
+                ),
             ]
             for row in rows.itertuples()
         ]

@@ -90,7 +90,8 @@ def _energies(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Finding]:
         f"{_span(rows['energy_error'], rows['loading'])} beside the solid's, with nothing fitted "
         f"to the specimen; {verdict}."
     )
-    yield Finding(text, percent(worst), "energy of the full lattice beside the 3D solid", "lattice")
+    key = percent(worst) if np.isnan(doubt) else f"{percent(worst)} ± {percent(doubt)}"
+    yield Finding(text, key, "energy of the full lattice beside the 3D solid", "lattice")
     normal = [
         (name, _of(table, name, walls))
         for name in rows_of(study, LATTICES)
@@ -210,7 +211,7 @@ def _solid(table: pd.DataFrame, study: xr.Dataset) -> Iterator[Finding]:
             continue
         finest = rows[rows["per_gap"] == rows["per_gap"].min()]
         yield Finding(
-            f"The {NAMES[method]} at {finest['per_gap'].iloc[0]:g} of the gap: "
+            f"The {NAMES[method]}, elements {finest['per_gap'].iloc[0]:g} times the gap: "
             f"{finest['dof'].iloc[0]} unknowns, {quantity(finest['seconds'].iloc[0], 's', 2)}, its "
             f"energy {_span(finest['energy_error'], finest['loading'])} beside the limit that the "
             "ladder gives."
@@ -240,6 +241,11 @@ def _relaxation(group: xr.Dataset) -> Iterator[Finding]:
     )
 
 
+def _signed(way: object) -> str:
+    """A direction with a minus sign at which no line breaks."""
+    return str(way).replace("-", "−")
+
+
 def _finite_strain(group: xr.Dataset) -> Iterator[Finding]:
     known = group.dropna("method", how="all", subset=["ratio"])
     for method in known["method"].values:
@@ -247,11 +253,11 @@ def _finite_strain(group: xr.Dataset) -> Iterator[Finding]:
         if method not in ("fe_elastic", "lattice_fe_beam"):
             continue
         words = [
-            f"{percent(value, sign=True)} ({way})"
+            f"{percent(value, sign=True)} ({_signed(way)})"
             for way, value in zip(ratio["direction"].values, ratio.values, strict=True)
         ]
         inside = [
-            str(way)
+            _signed(way)
             for way, value in zip(ratio["direction"].values, ratio.values, strict=True)
             if abs(value) <= FINITE
         ]
