@@ -28,6 +28,9 @@ from bondcell.wording import listed, model_name, model_phrase, percent, quantity
 PAPER, BEST = "fsi", "film"
 """The model that the study started from, and the one made to replace it."""
 
+FIRST = ("fsi", "film", "bounds", "surrogate", "generatrix")
+"""Models whose columns come first: a table may be wider than the page."""
+
 SHOWN = (0.1, 0.03, 0.01, 1e-3)
 """Wanted errors in the table of best models."""
 
@@ -157,8 +160,8 @@ def atlas_lines(table: pd.DataFrame) -> list[Table]:
 
 
 def _region_table(load: str, table: pd.DataFrame) -> Table:
-    names = list(dict.fromkeys(table["model"]))
-    names.remove(REFERENCE)
+    known = [name for name in dict.fromkeys(table["model"]) if name != REFERENCE]
+    names = sorted(known, key=lambda name: FIRST.index(name) if name in FIRST else len(FIRST))
     lines = []
     keys = ["gaps", "particles", "poisson"]
     for key, group in table.groupby(keys, sort=False):
@@ -170,7 +173,7 @@ def _region_table(load: str, table: pd.DataFrame) -> Table:
         lines.append([*row, str(cells["points"].max())])
     bands = "; ".join(f"{band} {BAND_WORDS[band]}" for found in BANDS.values() for band in found)
     return Table(
-        f"Load {load}: largest / median size of the error by region; * some points are outside "
+        f"Load {load}: largest / median size of the error [%] by region; * some points are outside "
         f"the model's stated range, – some have no value. Bands: {bands}.",
         ["gaps", "particles", "ν_m", *(model_name(name) for name in names), "points"],
         lines,
@@ -187,7 +190,10 @@ def _errors(row: pd.Series) -> str:
         return "–"
     mark = "*" if row["points_outside"] else ""
     mark += "–" if row["left_out"] else ""
-    return f"{percent(row['abs_error_max'])} / {percent(row['abs_error_median'])}{mark}"
+    largest, median = (
+        percent(row[name]).removesuffix(" %") for name in ("abs_error_max", "abs_error_median")
+    )
+    return f"{largest} / {median}{mark}"
 
 
 def _best_table(best: pd.DataFrame, load: str) -> Table:
