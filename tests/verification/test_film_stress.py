@@ -165,8 +165,7 @@ def test_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
     """The claimed error holds against a rule of more points each way."""
     cells = (equal_pairs(5, seed=43), unequal_pairs(3, seed=44))
     usual = [bounds(cell)[0] for cell in cells]
-    monkeypatch.setattr(film_stress, "RADIAL_POINTS", 14)
-    monkeypatch.setattr(film_domain, "AXIAL_POINTS", 12)
+    monkeypatch.setattr(film_stress, "MATRIX_POINTS", (14, 13))
     monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
     monkeypatch.setattr(film_stress, "DEPTH_POINTS", 16)
     for value, cell in zip(usual, cells, strict=True):
@@ -203,6 +202,22 @@ def test_many_materials_or_few() -> None:
     alone = bounds(cell.ravel().take(some))[0]
     assert np.all(together[some] <= alone * (1 + 1e-7))
     assert together[some] == pytest.approx(alone, rel=1.1e-5)
+
+
+@pytest.mark.parametrize("load", ["normal", "torsion"])
+def test_the_ends_do_not_cross(load: str) -> None:
+    """Long and short gaps, one material and rigid particles, nu = 1/2 everywhere and nu_m = 0."""
+    cell = Cell.from_values(
+        radius_i=1.0,
+        radius_j=[1.0, 0.5],
+        gap=np.array([1e-6, 1e-2, 1.0, 2.9, 50.0])[:, None],
+        young_i=np.array([1.0, 1e3, np.inf])[:, None, None],
+        young_m=1.0,
+        poisson_i=0.5,
+        poisson_m=np.array([0.0, 0.5])[:, None, None, None],
+    )
+    lower, upper, _ = bounds(cell, load)
+    assert np.all((lower > 0) & (lower <= upper))
 
 
 class TestTorsion:
@@ -258,8 +273,7 @@ class TestTorsion:
     def test_quadrature(self, monkeypatch: pytest.MonkeyPatch) -> None:
         cells = (equal_pairs(4, seed=47), unequal_pairs(3, seed=48))
         usual = [bounds(cell, "torsion")[0] for cell in cells]
-        monkeypatch.setattr(film_stress_torsion, "RADIAL_POINTS", 14)
-        monkeypatch.setattr(film_domain, "AXIAL_POINTS", 12)
+        monkeypatch.setattr(film_stress_torsion, "MATRIX_POINTS", (14, 13))
         monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
         monkeypatch.setattr(film_stress, "DEPTH_POINTS", 16)
         for value, cell in zip(usual, cells, strict=True):

@@ -88,27 +88,29 @@ class Domain:
     span: Jet
 
 
-def domain(geometry: Geometry, radial_points: int | None = None) -> Domain:
+def domain(geometry: Geometry, points: tuple[int, int] | None = None) -> Domain:
     """Points, weights and coordinates.
 
     Parameters
     ----------
     geometry
         Cells of one kind.
-    radial_points
-        Gauss points across a panel, `RADIAL_POINTS` if not given.
+    points
+        Gauss points across a panel and along half a line, `RADIAL_POINTS` and `AXIAL_POINTS` if
+        not given.
 
     Notes
     -----
     ``above = 2 phi z/(phi + z + sqrt(phi^2 + z^2))`` vanishes with phi and with z, and equals phi
     to first order at the sphere: Rvachev's conjunction.
     """
-    radius, measure = _radii(geometry, radial_points or RADIAL_POINTS)
+    across, half = points or (RADIAL_POINTS, AXIAL_POINTS)
+    radius, measure = _radii(geometry, across)
     low, up = (_surface(radius, own) for own in (geometry.radius_i, geometry.radius_j))
     thickness = geometry.gap + low.dip + up.dip
     # Where a sphere meets its end plane inside the cell, fields have a corner.
     cornered = np.any(geometry.outer > np.minimum(geometry.radius_i, geometry.radius_j))
-    half = AXIAL_POINTS + CORNER_POINTS * int(cornered)
+    half += CORNER_POINTS * int(cornered)
     node, weight = leggauss(half if geometry.mirrored else 2 * half)
     fraction, share = (node + 1) / 2, weight / 2
     if geometry.mirrored:

@@ -32,8 +32,8 @@ ODD, EVEN = {1: 7, 3: 4}, {0: 7, 2: 4}
 LAYERS, PATCHES = 3, 5
 """Functions of depth and of angle of what vanishes outside a particle, of q and of p."""
 
-RADIAL_POINTS, DEPTH_POINTS = 10, 12
-"""Gauss points across a panel of the matrix, and along a particle's radius and its angle.
+MATRIX_POINTS, DEPTH_POINTS = (10, 9), 12
+"""Gauss points across a panel and along half a line; along a particle's radius and its angle.
 
 Too few would leave stresses whose energy they do not see: the bound would fail."""
 
@@ -123,7 +123,7 @@ def complementary(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArr
       ``rho = |x|/R_i``, instead of 1 - S: as smoothly, and even in z;
     - ``q = phi_i^2 P_k`` and ``p = phi_i P_k`` in the particle alone.
     """
-    space = domain(geometry, RADIAL_POINTS)
+    space = domain(geometry, MATRIX_POINTS)
     s = space.above_i / (space.above_i + space.above_j)
     step = s * s * (3.0 - 2.0 * s)
     rows = [_lines(space.r, geometry), _bubbles(space, s, geometry)]

@@ -19,9 +19,9 @@ from bondcell.models.film_stress import (
     EVEN,
     LAYERS,
     LINES,
+    MATRIX_POINTS,
     ODD,
     PATCHES,
-    RADIAL_POINTS,
     TRACES,
     angular,
     freed,
@@ -77,7 +77,7 @@ def complementary(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArr
         Of the matrix for unit ``1/mu``, of particle i and of particle j for unit Young's modulus;
         shape (3, cells, stresses, stresses). The functions q are those of `film_stress`.
     """
-    space = domain(geometry, RADIAL_POINTS)
+    space = domain(geometry, MATRIX_POINTS)
     s = space.above_i / (space.above_i + space.above_j)
     side = freed(space.r, geometry)
     table = legendre(film_coordinate(space).value, max(*ODD.values(), *EVEN.values()))
