@@ -48,7 +48,7 @@ def test_smoke_study_on_slurm_is_the_local_one(node, make_workspace, tmp_path):
     assert done.returncode == 0, done.stdout
     jobs = (node / "completed.log").read_text().splitlines()
     assert len(jobs) == 3, jobs  # both batches in one, the convergence study, the collection
-    assert all("JobState=COMPLETED" in job for job in jobs)
+    assert all("JobState=COMPLETED" in job and "Tres=cpu=1," in job for job in jobs)
     done = here.snakemake(STUDY)
     assert done.returncode == 0, done.stdout
     xr.testing.assert_identical(but_times(there / STUDY), but_times(here / STUDY))
