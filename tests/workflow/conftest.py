@@ -59,6 +59,7 @@ class Workspace:
         shutil.copytree(ROOT / "src", folder / "src", ignore=ignored)
         shutil.copytree(ROOT / "workflow", folder / "workflow", ignore=ignored)
         shutil.copy(ROOT / "Snakefile", folder)
+        (folder / "profiles").symlink_to("workflow/profiles")
         (folder / "src" / "sitecustomize.py").write_text(SITECUSTOMIZE)
         self.modules_folder = folder / "modules"
         self.modules_folder.mkdir()

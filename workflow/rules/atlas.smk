@@ -19,6 +19,8 @@ rule atlas_tables:
             caption="../report/error_against_time.rst",
             category="{scene}",
         ),
+    params:
+        sources=contents("atlas_tables.py"),
     message:
         "{wildcards.scene}: error by region, best models, error against run time"
     script:
@@ -33,6 +35,8 @@ rule accuracy_map:
         "results/accuracy_map.npz",
     # It measures time, see rule convergence.
     threads: WHOLE_MACHINE
+    params:
+        sources=contents("accuracy_map.py"),
     message:
         "accuracy map: summary of the atlas for the package"
     script:

@@ -12,6 +12,7 @@ rule collect:
     output:
         "results/{scene}/study.nc",
     params:
+        sources=contents("collect.py"),
         digest=lambda wildcards: scene_of(wildcards).digest,
     message:
         "{wildcards.scene}: collect"

@@ -18,6 +18,7 @@ rule analytic:
     wildcard_constraints:
         part=r"([a-z]+_)?\d+of\d+",
     params:
+        sources=contents("analytic.py"),
         digest=lambda wildcards: scene_of(wildcards).models_digest,
     message:
         "{wildcards.scene}: analytic models, batch {wildcards.part}"
@@ -38,6 +39,7 @@ rule reference:
         attempt=lambda wildcards, attempt: attempt,
         attempts=ATTEMPTS,
     params:
+        sources=contents("reference.py"),
         digest=lambda wildcards: scene_of(wildcards).reference_digest,
     message:
         "{wildcards.scene}: finite elements ({wildcards.bc}), batch {wildcards.part}"
@@ -52,6 +54,7 @@ rule relaxation_models:
     output:
         "results/{scene}/batches/relaxation_models_{load}_{part}.nc",
     params:
+        sources=contents("relaxation_models.py"),
         digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
     message:
         "{wildcards.scene}: relaxation by models ({wildcards.load}), batch {wildcards.part}"
@@ -66,6 +69,7 @@ rule relaxation_fe:
     output:
         "results/{scene}/batches/relaxation_fe_{load}_{part}.nc",
     params:
+        sources=contents("relaxation_fe.py"),
         digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
     message:
         "{wildcards.scene}: relaxation by finite elements ({wildcards.load}), batch {wildcards.part}"
@@ -85,6 +89,7 @@ rule relaxation_methods:
     # As below.
     threads: WHOLE_MACHINE
     params:
+        sources=contents("relaxation_methods.py"),
         digest=lambda wildcards: scene_of(wildcards).methods_digest,
     message:
         "{wildcards.scene}: methods in time"
@@ -101,6 +106,7 @@ rule convergence:
     # It measures time: claiming every core keeps other jobs away while it runs on one of them.
     threads: WHOLE_MACHINE
     params:
+        sources=contents("convergence.py"),
         digest=lambda wildcards: scene_of(wildcards).convergence_digest,
     message:
         "{wildcards.scene}: convergence study"

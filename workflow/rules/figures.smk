@@ -11,6 +11,7 @@ rule figures:
             category="{scene}",
         ),
     params:
+        sources=contents("figures.py"),
         digest=lambda wildcards: scene_of(wildcards).digest,
     message:
         "{wildcards.scene}: figures"

@@ -1,5 +1,6 @@
 # What is planned: scenes, their batches, and the source files that each job's work rests on.
 # Scenes are read when a rule asks for them, so a plan costs only what the wanted files need.
+import hashlib
 import sys
 import warnings
 from functools import cache
@@ -145,6 +146,15 @@ def kept_scenes():
 def sources(script):
     """The package's files that a script imports: an edit of one of them makes its jobs run again."""
     return from_here(script_sources(Path(workflow.basedir) / "workflow" / "scripts" / script))
+
+
+@cache
+def contents(script):
+    """Digest of these files: an edit is noticed even if clocks disagree on what is newer."""
+    digest = hashlib.sha256()
+    for path in sources(script):
+        digest.update(hashlib.sha256(Path(path).read_bytes()).digest())
+    return digest.hexdigest()
 
 
 def data_files(folder):

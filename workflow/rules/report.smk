@@ -7,6 +7,7 @@ rule report:
     output:
         report("results/report.html", caption="../report/report.rst"),
     params:
+        sources=contents("report.py"),
         digests=lambda _: {scene.name: scene.digest for scene in study_scenes()},
         kept=lambda _: kept_scenes(),
     message:

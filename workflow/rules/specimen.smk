@@ -9,6 +9,7 @@ rule specimen_part:
         part="lattices|fe_rigid|relaxation|finite_strain",
     threads: WHOLE_MACHINE
     params:
+        sources=contents("specimen_part.py"),
         digest=lambda wildcards: scene_of(wildcards).specimen_digest,
     message:
         "{wildcards.scene}: {wildcards.part}"
@@ -26,6 +27,7 @@ rule specimen_elastic:
         "results/{scene}/batches/specimen_midplane.nc",
     threads: WHOLE_MACHINE
     params:
+        sources=contents("specimen_part.py"),
         digest=lambda wildcards: scene_of(wildcards).specimen_digest,
     message:
         "{wildcards.scene}: fe_elastic"
@@ -41,6 +43,8 @@ rule specimen_vtk:
         "results/{scene}/lattice_{loading}.vtu",
     wildcard_constraints:
         loading="horizontal|vertical",
+    params:
+        sources=contents("specimen_vtk.py"),
     message:
         "{wildcards.scene}: lattice for ParaView ({wildcards.loading})"
     script:
@@ -57,6 +61,7 @@ rule specimen_field_vtk:
     wildcard_constraints:
         loading="horizontal|vertical",
     params:
+        sources=contents("specimen_field_vtk.py"),
         digest=lambda wildcards: scene_of(wildcards).specimen_digest,
     message:
         "{wildcards.scene}: solid for ParaView ({wildcards.loading})"

@@ -4,6 +4,8 @@ rule surrogate:
         sources=sources("surrogate.py"),
     output:
         "results/surrogate.npz",
+    params:
+        sources=contents("surrogate.py"),
     message:
         "surrogate: the finite element reference on a Chebyshev grid"
     script:

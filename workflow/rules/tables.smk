@@ -8,6 +8,8 @@ rule accuracy:
             caption="../report/accuracy.rst",
             category="{scene}",
         ),
+    params:
+        sources=contents("accuracy.py"),
     message:
         "{wildcards.scene}: error of each model against the reference"
     script:
@@ -25,6 +27,7 @@ rule convergence_table:
             category="{scene}",
         ),
     params:
+        sources=contents("convergence_table.py"),
         groups=lambda wildcards: ladder_groups(scene_of(wildcards)),
     message:
         "{wildcards.scene}: error and time of each discretisation"
@@ -42,6 +45,8 @@ rule stability:
             caption="../report/stability.rst",
             category="{scene}",
         ),
+    params:
+        sources=contents("stability.py"),
     message:
         "{wildcards.scene}: estimate, flag and cost of every point"
     script:
@@ -59,6 +64,7 @@ rule accuracy_over_time:
             category="{scene}",
         ),
     params:
+        sources=contents("relaxation_tables.py"),
         table="accuracy_over_time",
     message:
         "{wildcards.scene}: error of each model over time"
@@ -77,6 +83,7 @@ rule relaxation_stability:
             category="{scene}",
         ),
     params:
+        sources=contents("relaxation_tables.py"),
         table="relaxation_stability",
     message:
         "{wildcards.scene}: flag, estimate and check of every series"
@@ -97,6 +104,7 @@ rule bond_series:
         ),
         netcdf="results/{scene}/bond_series.nc",
     params:
+        sources=contents("bond_series.py"),
         digest=lambda wildcards: scene_of(wildcards).digest,
     message:
         "{wildcards.scene}: the bonds' own series"
