@@ -193,3 +193,15 @@ def test_import_is_light():
         "bondcell.relaxation; assert 'skfem' not in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.parametrize("share", [0.9, 0.99, 0.999])
+def test_a_fit_knows_its_error_however_deep_the_matrix_relaxes(share):
+    prony = Prony(weights=[share], times=[1.0], relative_to="instantaneous")
+    time = np.linspace(0, 12, 40)
+    fitted, reference = (
+        bondcell.relaxation(study(poisson_m=0.3), prony, time, model=model)
+        for model in ("surrogate", "fe")
+    )
+    error = np.abs(fitted.stiffness / reference.stiffness - 1)
+    assert (error <= fitted.error_estimate + reference.error_estimate).all()
