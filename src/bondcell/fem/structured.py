@@ -65,7 +65,7 @@ class Load:
     grading: Grading
     rate: float = 20.0
     early_cut: float = 1e-7
-    usual_cut: float = 2e-9
+    usual_cut: float = 3e-8
 
 
 def _alone(responses: list[FloatArray], length: float) -> FloatArray:
