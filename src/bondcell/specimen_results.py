@@ -34,14 +34,17 @@ def combine(parts: Mapping[str, xr.Dataset]) -> tuple[xr.Dataset, dict[str, xr.D
     -------
     tuple
         The root group with the comparison; the groups ``ladder``, ``bonds``, ``relaxation`` and
-        ``finite_strain`` of what there is. A method that was not asked for has no row; a
+        ``finite_strain`` of what there is. A method that was asked for nowhere has no row; a
         combination that was not computed is NaN and flagged.
     """
     found = [parts[name] for name in ("lattices", *SOLIDS) if name in parts]
     groups = {name: parts[name] for name in ("relaxation", "finite_strain") if name in parts}
     walls = [name for name in WALLS if any(name in part.walls.values for part in found)]
-    data = xr.concat([_filled(part, walls) for part in found], "method", data_vars="all")
-    data = data.sel({"method": [name for name in METHODS if name in data["method"].values]})
+    data = xr.concat([_filled(part, walls) for part in found], "method", "all", join="outer")
+    if "per_gap" in data.dims:
+        data = data.sortby("per_gap", ascending=False)
+    asked = {str(name) for part in parts.values() for name in part["method"].values}
+    data = _blank(data, method=[name for name in METHODS if name in asked])
     for name in (*(str(name) for name in data.data_vars),):
         source = next(part for part in found if name in part)
         data[name].attrs = source[name].attrs
@@ -65,9 +68,14 @@ def _aligned(group: xr.Dataset, root: xr.Dataset) -> xr.Dataset:
 def _filled(part: xr.Dataset, walls: list[str]) -> xr.Dataset:
     """A part on all walls, without what goes into the group of bonds."""
     kept = part.drop_vars([name for name in (*BONDS, "force") if name in part.variables])
+    return _blank(kept, walls=walls)
+
+
+def _blank(data: xr.Dataset, **names: list[str]) -> xr.Dataset:
+    """The data on more methods or walls: NaN and flagged where there was nothing."""
     blank: dict[Any, Any] = {"status": Status.not_computed, "dof": 0}
-    others = {name: np.nan for name in kept.data_vars if name not in blank}
-    return kept.reindex(walls=walls, fill_value=others | blank)
+    others = {name: np.nan for name in data.data_vars if name not in blank}
+    return data.reindex(names, fill_value=others | blank)
 
 
 def _with_reference(data: xr.Dataset) -> xr.Dataset:
@@ -119,7 +127,8 @@ def best_energy(data: xr.Dataset) -> tuple[FloatArray, FloatArray, str]:
     """
     shape = (data.sizes["loading"], data.sizes["walls"])
     energy, error = np.full(shape, np.nan), np.full(shape, np.nan)
-    solids = [name for name in reversed(SOLIDS) if name in data["method"].values]
+    solved_by = data["method"].values[data["energy"].notnull().any(("loading", "walls")).values]
+    solids = [name for name in reversed(SOLIDS) if name in solved_by]
     sizes = data["per_gap"].values if solids else np.array([])
     for i, loading in enumerate(data["loading"].values):
         here = data.sel(loading=loading)

@@ -45,8 +45,11 @@ def read_specimen(path: str | Path) -> dict[str, xr.Dataset]:
 
 
 def rows_of(study: xr.Dataset, known: tuple[str, ...]) -> list[str]:
-    """Methods of a kind that the file has, in their order."""
-    return [name for name in known if name in study["method"].values]
+    """Methods of a kind whose energy the file has, in their order."""
+    there = study["energy"].notnull()
+    there = there.any([dim for dim in there.dims if dim != "method"])
+    found = there["method"].values[there.values]
+    return [name for name in known if name in found]
 
 
 def fullest(study: xr.Dataset) -> str:
@@ -60,8 +63,9 @@ def best_solid(study: xr.Dataset) -> str:
 
 
 def first_walls(study: xr.Dataset) -> str:
-    """Free walls where they were computed."""
-    known = study["walls"].values.tolist()
+    """Free walls where the fullest lattice has them."""
+    there = study["energy"].sel({"method": fullest(study)}).notnull().any("loading")
+    known = there["walls"].values[there.values].tolist()
     return "free" if "free" in known else str(known[0])
 
 

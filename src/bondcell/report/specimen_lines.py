@@ -98,7 +98,7 @@ def _printed(study: xr.Dataset) -> Table:
     walls = first_walls(study)
     lines = []
     for method, model in (("lattice_paper", "de"), ("fe_rigid", "fe"), ("fe_elastic", "fe")):
-        if method not in study["method"].values:
+        if not rows_of(study, (method,)):
             continue
         energy, norm = PRINTED[model]
         softest = float(study["softest"].sel({"method": method, "walls": walls}))
