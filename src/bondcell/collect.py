@@ -133,9 +133,8 @@ def _with_models(merged: xr.Dataset, names: list[str]) -> xr.Dataset:
 
 
 def machines(datasets: Iterable[xr.Dataset]) -> dict[str, str]:
-    """The machines that computed the datasets, joined where there were several."""
-    attributes = [dataset.attrs for dataset in datasets]
-    return {
-        key: " | ".join(dict.fromkeys(str(found[key]) for found in attributes))
-        for key in (provenance.machine() if attributes else ())
-    }
+    """The machines that computed the datasets, joined in one order where there were several."""
+    keys = list(provenance.machine())
+    found = dict.fromkeys(tuple(str(data.attrs[key]) for key in keys) for data in datasets)
+    columns = zip(*found, strict=True)
+    return {key: " | ".join(values) for key, values in zip(keys, columns, strict=False)}

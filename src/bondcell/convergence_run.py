@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -43,6 +44,8 @@ GRADED_ORDER = 4
 
 _OF_BASIS = ("bound", "sample_error")
 
+_TIMES = {"seconds_spread": "spread", "seconds_cpu": "cpu"}
+
 MODEL_POINTS = (100, 10_000)
 """Fewest and most points on which an analytic model is timed: cells of slightly different gaps."""
 
@@ -64,6 +67,8 @@ class _Rung:
     level: Level
     bound: float = np.nan
     sample_error: float = np.nan
+    spread: float = np.nan
+    cpu: float = np.nan
 
 
 def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
@@ -82,7 +87,8 @@ def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Datase
         On ``(case, method, level)``: ``refinement`` (order p, ratio of neighbouring elements,
         element size or vectors of a basis), ``stiffness`` [N m-1] or ``rotational_stiffness``
         [N m rad-1], ``dof``, ``elements``, ``seconds_mesh``, ``seconds_assembly``,
-        ``seconds_solve``, ``seconds``, ``error``, ``order``, ``status``, and of the reduced basis
+        ``seconds_solve``, ``seconds``, ``seconds_spread``, ``seconds_cpu``, ``error``, ``order``,
+        ``status``, and of the reduced basis
         ``bound`` and ``sample_error``. On ``(case, analytic_model)``: ``model_stiffness`` (or
         ``model_rotational_stiffness``), ``model_error``, ``model_seconds``, ``model_status``. On
         ``case``: ``reference_error``, ``load``, ``unit``, ``bc`` and the inputs.
@@ -173,11 +179,23 @@ def _climb(
         try:
             if number == 0:
                 level()
-            rungs.append(_Rung(value, Status.ok, _median([level() for _ in range(repeats)])))
+            rungs.append(_measured(value, level, repeats))
         except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError) as error:
             warnings.warn(f"case {case}, {parameter} = {value}: {error}", stacklevel=2)
             rungs.append(_Rung(value, _failure(error), _FAILED))
     return rungs
+
+
+def _measured(value: float, level: Callable[[], Level], repeats: int) -> _Rung:
+    """Median of the repeats with the distance of the slowest from the quickest, and CPU time."""
+    runs, cpu = [], []
+    for _ in range(repeats):
+        started = time.process_time()
+        runs.append(level())
+        cpu.append(time.process_time() - started)
+    wall = [run.seconds for run in runs]
+    spread = max(wall) - min(wall)
+    return _Rung(value, Status.ok, _median(runs), spread=spread, cpu=median(cpu))
 
 
 def _failure(error: Exception) -> Status:
@@ -205,7 +223,7 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
     methods = list(ladders)
     levels = max((len(rungs) for rungs in ladders.values()), default=0)
     shape = (len(methods), levels)
-    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds", *_OF_BASIS)
+    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds", *_OF_BASIS, *_TIMES)
     real = {name: np.full(shape, np.nan) for name in names}
     count = {name: np.zeros(shape, dtype=np.int64) for name in ("dof", "elements")}
     status = np.full(shape, Status.not_computed, dtype=np.int8)
@@ -217,6 +235,8 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
         }
         for name in ("refinement", *_OF_BASIS):
             values[name] = np.array([getattr(rung, name) for rung in rungs])
+        for name, own in _TIMES.items():
+            values[name] = np.array([getattr(rung, own) for rung in rungs])
         values["error"] = relative_error(values["stiffness"], reference)
         values["order"] = observed_order(values["error"], _work(method, values))
         status[here] = [rung.status for rung in rungs]
@@ -308,6 +328,8 @@ _LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
     "seconds_assembly": _time("wall time of assembly, median of repeats"),
     "seconds_solve": _time("wall time of the solution, median of repeats"),
     "seconds": _time("wall time of all stages"),
+    "seconds_spread": _time("wall time of the slowest repeat less that of the quickest"),
+    "seconds_cpu": _time("processor time of all stages, median of repeats"),
     "dof": _number("degrees of freedom"),
     "elements": _number("elements of the mesh"),
     "status": cf_flag_attributes(),

@@ -59,6 +59,15 @@ def machine() -> dict[str, str]:
     }
 
 
+def measuring() -> dict[str, str]:
+    """What a timed run should tell beside its machine: threads, and what else was running.
+
+    Asked before the run begins: a load average well above zero means that others had the machine.
+    """
+    load = f"{os.getloadavg()[0]:.2f}" if hasattr(os, "getloadavg") else UNKNOWN
+    return {"threads": os.environ.get("OMP_NUM_THREADS", UNKNOWN), "load_average_before": load}
+
+
 def usable_cores() -> int:
     """Cores this process may run on."""
     if hasattr(os, "sched_getaffinity"):

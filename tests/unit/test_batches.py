@@ -227,6 +227,7 @@ def test_several_machines_are_all_named():
     here = xr.Dataset(attrs={"machine": "one", "cores": "2", "platform": "x"})
     there = here.assign_attrs(machine="two")
     assert machines([here, there, here])["machine"] == "one | two"
+    assert machines([here, there])["cores"] == "2 | 2"  # in the order of the machines
     assert machines([]) == {}
 
 

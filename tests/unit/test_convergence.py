@@ -122,6 +122,12 @@ def test_times_are_medians_of_repeats_without_the_first_run(run):
     assert coarsest["seconds"] == 3 + 6 + 9
 
 
+def test_spread_and_processor_time_stand_beside_the_median(run):
+    coarsest = ladder(run[0], "structured").isel(level=0)
+    assert coarsest["seconds_spread"] == 6 * (4 - 2)  # second to fourth call of the law above
+    assert coarsest["seconds_cpu"] >= 0
+
+
 def test_every_case_has_its_own_cell_and_condition(run):
     study, calls, _ = run
     assert {call[1:] for call in calls} == {("roller", 5e-4), ("confined", 1e-5)}

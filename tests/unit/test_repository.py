@@ -104,3 +104,17 @@ def test_script_and_message_name_the_same_system_packages():
         check=True,
     )
     assert done.stdout.split() == SYSTEM_PACKAGES.split()
+
+
+def test_images_install_the_lock_file_and_copy_what_exists():
+    for name in ("Dockerfile", "bondcell.def"):
+        text = read(name)
+        assert "--require-hashes -r requirements.lock" in text
+        assert "system_deps.sh --list" in text
+    copied = re.findall(r"^COPY (.+) \S+$", read("Dockerfile"), flags=re.MULTILINE)
+    copied += re.findall(r"^    (\S+) /opt/bondcell/", read("bondcell.def"), flags=re.MULTILINE)
+    names = {name for group in copied for name in group.split()}
+    assert len(names) > 8
+    for name in names:
+        assert (ROOT / name).exists(), name
+        assert f"!{name}" in read(".dockerignore").splitlines(), name

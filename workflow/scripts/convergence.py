@@ -8,11 +8,13 @@ from bondcell.batch_files import write_batch
 from bondcell.convergence_run import run_convergence
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
+from bondcell.provenance import measuring
 
 with job(f"{snakemake.wildcards.scene}: convergence study") as log:
     log.unit = "cases"
     digest = snakemake.params.digest
     scene = planned_scene(snakemake.input.scene, convergence_digest=digest)
-    result = run_convergence(scene, log.progress)
+    about = measuring()
+    result = run_convergence(scene, log.progress).assign_attrs(about)
     write_batch(result, snakemake.output[0], digest)
     log.result = f"{result.sizes['case']} cases"
