@@ -24,16 +24,30 @@ specimen:
 
 
 @pytest.fixture(scope="module")
-def run(make_workspace, tmp_path_factory):
+def first_run(make_workspace, tmp_path_factory):
+    """The workspace, and what its jobs had loaded."""
     workspace = make_workspace(tmp_path_factory.mktemp("specimen"), small=SPECIMEN)
     done = workspace.snakemake()
     assert done.returncode == 0, done.stdout
-    return workspace
+    return workspace, workspace.modules()
+
+
+@pytest.fixture(scope="module")
+def run(first_run):
+    return first_run[0]
 
 
 @pytest.fixture(scope="module")
 def results(run):
     return read_specimen(run / "results/small/study.nc")
+
+
+def test_sources_of_a_rule_are_what_its_jobs_loaded(first_run):
+    workspace, modules = first_run
+    ran = [path for path in workspace.scripts() if path.stem in modules]
+    assert {"specimen_part", "specimen_vtk", "specimen_field_vtk"} <= {path.stem for path in ran}
+    for script in ran:
+        assert workspace.undeclared(script, modules) == set(), script
 
 
 def test_names_and_dimensions(results):

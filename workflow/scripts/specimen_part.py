@@ -7,6 +7,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from bondcell import specimen_finite_strain, specimen_relaxation, specimen_solid  # noqa: F401
 from bondcell.batch_files import write_batch
+from bondcell.fem import reduced_basis, reference, structured, sweep  # noqa: F401
 from bondcell.jobs import job
 from bondcell.planned_scene import planned_scene
 from bondcell.solid import finite_strain, moduli, pocket  # noqa: F401
