@@ -66,14 +66,14 @@ class Region:
 
     def mask(self, study: xr.Dataset) -> Mask:
         """Points of the region, shape of the swept axes."""
-        template = study["stiffness"].isel(model=0, drop=True)
-        inside = np.ones(template.shape, dtype=bool)
+        dims = [str(dim) for dim in study["stiffness"].dims if dim != "model"]
+        inside = np.ones([study.sizes[dim] for dim in dims], dtype=bool)
         for axis, band in self.bands().items():
-            if band == ANY:
-                continue
-            low, high = BANDS[axis][band]
-            values = study[axis].broadcast_like(template).transpose(*template.dims).values
-            inside &= (values > low * (1 + ROUNDING)) & (values <= high * (1 + ROUNDING))
+            if band != ANY:
+                low, high = (bound * (1 + ROUNDING) for bound in BANDS[axis][band])
+                along = [-1 if dim == axis else 1 for dim in dims]
+                values = study[axis].values.reshape(along)
+                inside &= (values > low) & (values <= high)
         return inside
 
 
