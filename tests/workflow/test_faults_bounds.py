@@ -12,8 +12,14 @@ from bondcell.job_bounds import Bounds
 from bondcell.status import Status
 from bondcell.storage import read_dataset
 
-LAST = Bounds(seconds=40.0, megabytes=3000.0)
-FIRST = Bounds(seconds=40.0, megabytes=3000.0, attempt=1, attempts=2)
+
+def last(seconds=600.0):
+    return Bounds(seconds, megabytes=3000.0)
+
+
+def first():
+    return Bounds(seconds=600.0, megabytes=3000.0, attempt=1, attempts=2)
+
 
 SCENE = """\
 title: One gap needs too much
@@ -43,7 +49,7 @@ def solve(cell, **options):
 
 
 def test_answers_and_errors_come_through():
-    for bounds in (FIRST, LAST):
+    for bounds in (first(), last()):
         assert bounds.bounded(divmod)(7, 2) == (3, 1)
         with pytest.raises(ZeroDivisionError):
             bounds.bounded(divmod)(7, 0)
@@ -51,17 +57,17 @@ def test_answers_and_errors_come_through():
 
 def test_last_attempt_loses_only_what_exceeds_it():
     with pytest.raises(PointLost, match="over the bound of 3000 MB in attempt 1 of 1"):
-        LAST.bounded(bytearray)(4 * 10**9)
+        last().bounded(bytearray)(4 * 10**9)
     with pytest.raises(PointLost, match="ended with -9"):
-        LAST.bounded(lambda: signal.raise_signal(signal.SIGKILL))()
+        last().bounded(lambda: signal.raise_signal(signal.SIGKILL))()
     with pytest.raises(PointLost, match=r"over the bound of 0\.4 s"):
-        Bounds(0.4, 3000.0).bounded(signal.pause)()
-    assert LAST.bounded(len)("still there") == 11
+        last(0.4).bounded(signal.pause)()
+    assert last().bounded(len)("still there") == 11
 
 
 def test_time_that_is_over_is_given_to_nobody():
     with pytest.raises(PointLost, match="over the bound of 0 s"):
-        Bounds(0.0, 3000.0).bounded(len)("")
+        last(0.0).bounded(len)("")
 
 
 EARLIER = """\
@@ -102,6 +108,7 @@ def check(workspace, done):
     assert np.isnan(fe.stiffness[2])
 
 
+@pytest.mark.slow
 def test_job_over_its_memory_is_repeated_and_then_flagged(make_workspace, tmp_path):
     workspace, done = run(make_workspace, tmp_path, "memory")
     check(workspace, done)
