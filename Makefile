@@ -63,7 +63,7 @@ accuracy-map: setup ## rebuild the data of the advice from the full atlas, minut
 	cp results/accuracy_map.npz $(ACCURACY_MAP)
 
 schema: setup ## write params/*.schema.json, the scene format for editors
-	$(RUN) bondcell.scene_schema
+	$(RUN) bondcell.scenes.schema
 
 bench: setup ## run the benchmarks; they are no tests
 	@sh scripts/system_deps.sh --optional

@@ -25,8 +25,14 @@ from bondcell.lattice.solve import solve
 from bondcell.lattice.specimen_geometry import DISPLACEMENT, LOADED
 from bondcell.solid.elastic import solve_elastic
 from bondcell.solid.rigid import condense
-from bondcell.specimen_bonds import Material
-from bondcell.specimen_solid import extrapolate, half_specimen, materials, specimen_mesh, supports
+from bondcell.specimen.bonds import Material
+from bondcell.specimen.solid_half import (
+    extrapolate,
+    half_specimen,
+    materials,
+    specimen_mesh,
+    supports,
+)
 
 PAPER_SIZE = 0.28
 """Element size per gap at 1.2 million unknowns."""

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from bondcell.accuracy_map import LOADS, AccuracyMap, shipped_map
 from bondcell.cell import Cell
 from bondcell.errors import InputError, UnsupportedLoad, Violation
 from bondcell.models import MODELS
 from bondcell.models.asked import ask
-from bondcell.paper_verdict import paper_verdict
 from bondcell.reference_options import DEFAULT_TOLERANCE
+from bondcell.results.accuracy_map import LOADS, AccuracyMap, shipped_map
+from bondcell.results.paper_verdict import paper_verdict
 from bondcell.wording import listed, model_phrase, number, percent, quantity
 
 REFERENCE = "fe"

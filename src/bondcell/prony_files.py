@@ -8,7 +8,7 @@ from typing import Any
 
 from bondcell.errors import InputError, Violation
 from bondcell.prony.prony import Prony, PronyError
-from bondcell.yaml_loading import load_mapping
+from bondcell.scenes.yaml_loading import load_mapping
 
 PAIRED = ("g", "k", "tau")
 """Columns of one table for both moduli (Abaqus-like)."""

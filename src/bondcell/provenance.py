@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from bondcell.scene import Scene
+    from bondcell.scenes.scene import Scene
 
 PACKAGES = ("bondcell", "numpy", "scipy", "xarray", "netCDF4", "scikit-fem", "gmsh")
 """Distributions whose versions matter to a result."""

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.accuracy import accuracy_table, signed_error
-from bondcell.particle_influence import negligible_from, particles_negligible_from
-from bondcell.result_view import is_reference, reference_names
+from bondcell.results.accuracy import accuracy_table, signed_error
+from bondcell.results.particle_influence import negligible_from, particles_negligible_from
+from bondcell.results.view import is_reference, reference_names
 from bondcell.status import Status
 
 

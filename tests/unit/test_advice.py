@@ -8,7 +8,10 @@ import pytest
 import xarray as xr
 
 import bondcell
-from bondcell.accuracy_map import (
+from bondcell.advice import MOST_MEASURED
+from bondcell.cell import Cell
+from bondcell.cli import main
+from bondcell.results.accuracy_map import (
     NO_VALUE,
     SMALLEST,
     STEP,
@@ -19,9 +22,6 @@ from bondcell.accuracy_map import (
     shipped_map,
     undelta,
 )
-from bondcell.advice import MOST_MEASURED
-from bondcell.cell import Cell
-from bondcell.cli import main
 
 BASE = {
     "radius_i": 7.5e-3,

@@ -10,10 +10,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from bondcell.errors import SceneError
-from bondcell.scene import load_scene, parse_scene
-from bondcell.study_list import load_study_list
-from bondcell.validate import validate_file
-from bondcell.yaml_loading import MOST_NODES, load_mapping
+from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.study_list import load_study_list
+from bondcell.scenes.validate import validate_file
+from bondcell.scenes.yaml_loading import MOST_NODES, load_mapping
 
 CELL = {
     "radius_i": "7.5 mm",

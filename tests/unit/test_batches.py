@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.analytic_batch import compute_analytic
-from bondcell.batch_files import describe, read_batch, write_batch
-from bondcell.batch_plan import JOB_SECONDS, analytic_batches, plan, reference_batches
-from bondcell.batches import Batch, cell_at
-from bondcell.collect import collect, labels, machines
 from bondcell.errors import DataError, InputError
 from bondcell.evaluate import evaluate
 from bondcell.inputs import cell_from_study
-from bondcell.jobs import job
-from bondcell.merge import merge
-from bondcell.planned_scene import planned_scene
-from bondcell.reference_batch import compute_reference
-from bondcell.scene import load_scene, parse_scene
-from bondcell.study import build_study
+from bondcell.jobs.analytic_batch import compute_analytic
+from bondcell.jobs.batch import Batch, cell_at
+from bondcell.jobs.batch_files import describe, read_batch, write_batch
+from bondcell.jobs.batch_plan import JOB_SECONDS, analytic_batches, plan, reference_batches
+from bondcell.jobs.collect import collect, labels, machines
+from bondcell.jobs.job import job
+from bondcell.jobs.merge import merge
+from bondcell.jobs.reference_batch import compute_reference
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.study import build_study
 
 SCENE = {
     "title": "A small scene",
@@ -183,7 +183,7 @@ def test_a_failed_geometry_stays_a_flagged_nan_in_the_file(tmp_path, scene, stud
             raise ArithmeticError("no factorisation")
         return reference.solve(cell, **options)
 
-    monkeypatch.setattr("bondcell.reference_batch.solve", solve)
+    monkeypatch.setattr("bondcell.jobs.reference_batch.solve", solve)
     with pytest.warns(RuntimeWarning, match="no factorisation"):
         batch = compute_reference(study, Batch("fe_roller"), 1e-3)
     write_batch(batch, tmp_path / "fe.nc", "digest")

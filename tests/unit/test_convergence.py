@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from bondcell import convergence_run
-from bondcell.convergence import (
+from bondcell.errors import BondcellError, MissingLibrary
+from bondcell.fem.level import Level
+from bondcell.jobs import convergence_run
+from bondcell.jobs.convergence_run import run_case, run_convergence
+from bondcell.results.convergence import (
     COLUMNS,
     combine_cases,
     convergence_table,
     observed_order,
     relative_error,
 )
-from bondcell.convergence_run import run_case, run_convergence
-from bondcell.errors import BondcellError, MissingLibrary
-from bondcell.fem.level import Level
-from bondcell.scene import parse_scene
+from bondcell.scenes.scene import parse_scene
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset
 

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.accuracy import accuracy_table
-from bondcell.batch_files import write_batch
-from bondcell.batch_plan import plan
-from bondcell.batches import Batch
-from bondcell.collect import collect, collect_other_loads
 from bondcell.errors import SceneError
 from bondcell.evaluate import evaluate
-from bondcell.reference_batch import compute_reference
-from bondcell.result_view import load_name, model_names, stiffness_unit
-from bondcell.scene import parse_scene, scene_json_schema
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.batch_plan import plan
+from bondcell.jobs.collect import collect, collect_other_loads
+from bondcell.jobs.reference_batch import compute_reference
+from bondcell.results.accuracy import accuracy_table
+from bondcell.results.view import load_name, model_names, stiffness_unit
+from bondcell.scenes.scene import parse_scene, scene_json_schema
+from bondcell.scenes.study import build_study
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset
-from bondcell.study import build_study
 
 SCENE = {
     "title": "Two loads",

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bondcell.quantities import NotAllowed, parse_quantity
+from bondcell.scenes.quantities import NotAllowed, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -150,7 +150,7 @@ def test_no_unit_does_anything_but_parse_or_be_refused(number, unit, wanted):
 
 def test_units_library_is_loaded_at_the_first_unit_only():
     code = (
-        "import sys; from bondcell.quantities import parse_quantity as p;"
+        "import sys; from bondcell.scenes.quantities import parse_quantity as p;"
         "p(1.0, 'm'); p('1e-3', 'm'); p('46 %'); p('rigid', 'Pa', allow_infinite=True);"
         "assert 'pint' not in sys.modules; p('1 mm', 'm'); assert 'pint' in sys.modules"
     )

@@ -9,24 +9,24 @@ import numpy as np
 import pytest
 
 from bondcell import Prony, relaxation
-from bondcell.batch_files import write_batch
-from bondcell.batch_plan import plan
-from bondcell.batches import Batch
-from bondcell.collect_relaxation import collect_relaxation
 from bondcell.errors import DataError, SceneError
-from bondcell.materials import MaterialError, known_materials, load_material, parse_material
-from bondcell.relaxation_batch import asked_fe, asked_models, compute_relaxation, shift_factor
-from bondcell.relaxation_bonds import bond_series, bond_table
-from bondcell.relaxation_tables import (
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.batch_plan import plan
+from bondcell.jobs.collect_relaxation import collect_relaxation
+from bondcell.jobs.relaxation_batch import asked_fe, asked_models, compute_relaxation, shift_factor
+from bondcell.results.relaxation_bonds import bond_series, bond_table
+from bondcell.results.relaxation_tables import (
     accuracy_over_time,
     methods_table,
     relaxation_stability,
     shortcut_error,
 )
-from bondcell.relaxation_view import series_words
-from bondcell.scene import load_scene, parse_scene
+from bondcell.results.relaxation_view import series_words
+from bondcell.scenes.materials import MaterialError, known_materials, load_material, parse_material
+from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.study import build_study
 from bondcell.status import cf_flag_attributes
-from bondcell.study import build_study
 
 PARAMS = Path(__file__).parents[2] / "params"
 CELL = {
@@ -293,9 +293,9 @@ def test_digests_follow_the_materials(tmp_path):
 def test_scene_without_prony_imports_nothing_of_it():
     code = (
         "import sys\n"
-        "from bondcell.scene import parse_scene\n"
-        "from bondcell.study import build_study\n"
-        "from bondcell.collect import collect\n"
+        "from bondcell.scenes.scene import parse_scene\n"
+        "from bondcell.scenes.study import build_study\n"
+        "from bondcell.jobs.collect import collect\n"
         f"data = {dict(SCENE, prony=None)!r}\n"
         "del data['prony'], data['reference']\n"
         "scene = parse_scene(data)\n"
@@ -303,14 +303,14 @@ def test_scene_without_prony_imports_nothing_of_it():
         "assert 'time' not in result.dims\n"
         "found = [n for n in sys.modules if n.startswith('bondcell.prony')]\n"
         "assert not found, found\n"
-        "assert not [n for n in sys.modules if n.startswith('bondcell.relaxation_batch')]\n"
+        "assert not [n for n in sys.modules if n.startswith('bondcell.jobs.relaxation_batch')]\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 
 
 def test_methods_in_time():
-    from bondcell.relaxation_methods import run_methods
+    from bondcell.jobs.relaxation_methods import run_methods
 
     methods = {"series": ["two"], "order": 3, "steps": [1, 2], "nodes": [6], "times": 2}
     found = run_methods(parse_scene(spoiled(methods=methods, checks=0)))

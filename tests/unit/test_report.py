@@ -7,13 +7,13 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 
-from bondcell.accuracy import accuracy_table
 from bondcell.figures import draw_scene
 from bondcell.report import headlines, with_subscripts, write_report
 from bondcell.report.convergence_part import convergence_findings
 from bondcell.report.sections import build_section
 from bondcell.report.sweep_findings import sweep_findings
-from bondcell.scene import parse_scene
+from bondcell.results.accuracy import accuracy_table
+from bondcell.scenes.scene import parse_scene
 from bondcell.status import Status
 from bondcell.storage import write_dataset
 

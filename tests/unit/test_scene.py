@@ -13,13 +13,13 @@ import pytest
 
 from bondcell.cell import UNITS, Cell
 from bondcell.errors import InputError
-from bondcell.quantities import UnitsWarning
-from bondcell.scene import Scene, load_scene, parse_scene, scene_json_schema
-from bondcell.scene_schema import schema_texts, write_schemas
-from bondcell.scene_sweep import Range
-from bondcell.study_list import load_study_list, study_list_json_schema
-from bondcell.validate import validate_file
-from bondcell.yaml_loading import load_mapping
+from bondcell.scenes.quantities import UnitsWarning
+from bondcell.scenes.scene import Scene, load_scene, parse_scene, scene_json_schema
+from bondcell.scenes.schema import schema_texts, write_schemas
+from bondcell.scenes.study_list import load_study_list, study_list_json_schema
+from bondcell.scenes.sweep import Range
+from bondcell.scenes.validate import validate_file
+from bondcell.scenes.yaml_loading import load_mapping
 
 PARAMS = Path(__file__).parents[2] / "params"
 SCENES = load_study_list(PARAMS / "study.yaml")
@@ -257,7 +257,7 @@ def test_one_metre_does_not_warn(tmp_path):
 
 def test_loading_a_scene_imports_neither_meshes_nor_datasets():
     code = (
-        "import sys; from bondcell.scene import load_scene;"
+        "import sys; from bondcell.scenes.scene import load_scene;"
         "[load_scene(path).sweep_digest for path in sys.argv[1:]];"
         "print(*sorted({m.split('.')[0] for m in sys.modules}))"
     )
@@ -317,7 +317,7 @@ def test_study_list():
 def test_schemas_are_current(tmp_path):
     for name, text in schema_texts().items():
         stored = (PARAMS / name).read_text(encoding="utf-8")
-        assert stored == text, "run: python -m bondcell.scene_schema"
+        assert stored == text, "run: python -m bondcell.scenes.schema"
     assert len(write_schemas(tmp_path)) == 3
     assert write_schemas(tmp_path) == []
 

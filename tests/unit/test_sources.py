@@ -22,7 +22,7 @@ print(json.dumps([sys.modules[name].__file__ for name in names]))
     [
         "bondcell.storage",
         "bondcell.evaluate",
-        "bondcell.reference_batch",
+        "bondcell.jobs.reference_batch",
         "bondcell.report",
     ],
 )
@@ -36,7 +36,7 @@ def test_sources_are_the_loaded_files(module):
 def test_evaluate_rests_on_no_finite_elements_but_the_reference_does():
     fem = PACKAGE / "fem"
     assert not any(path.is_relative_to(fem) for path in source_files("bondcell.evaluate"))
-    reference = source_files("bondcell.reference_batch")
+    reference = source_files("bondcell.jobs.reference_batch")
     assert fem / "reference.py" in reference
     assert PACKAGE / "models" / "fsi.py" not in reference
 

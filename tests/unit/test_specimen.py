@@ -5,13 +5,13 @@ import pytest
 
 from bondcell.errors import InputError
 from bondcell.lattice.specimen_geometry import DISPLACEMENT
-from bondcell.specimen import specimen
-from bondcell.specimen_bonds import Material, bond_springs, wall_spring
-from bondcell.specimen_bound import softest, softest_lattice
-from bondcell.specimen_compare import compare
-from bondcell.specimen_lattice import pocket_springs, specimen_lattice
-from bondcell.specimen_paper import printed_stiffness
-from bondcell.specimen_solid import extrapolate
+from bondcell.specimen.bonds import Material, bond_springs, wall_spring
+from bondcell.specimen.bound import softest, softest_lattice
+from bondcell.specimen.compare import compare
+from bondcell.specimen.lattice_variants import pocket_springs, specimen_lattice
+from bondcell.specimen.paper import printed_stiffness
+from bondcell.specimen.solid_half import extrapolate
+from bondcell.specimen.specimen import specimen
 from bondcell.status import Status
 
 LATTICES = [

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bondcell.errors import InputError
-from bondcell.specimen_finite_strain import specimen_finite_strain
+from bondcell.specimen.finite_strain import specimen_finite_strain
 
 
 def test_opposite_directions_bracket_the_linear_energy():

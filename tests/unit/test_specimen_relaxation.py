@@ -5,9 +5,9 @@ import pytest
 
 from bondcell.errors import InputError
 from bondcell.prony.prony import Prony
-from bondcell.specimen import specimen
-from bondcell.specimen_bonds import Material
-from bondcell.specimen_relaxation import specimen_relaxation
+from bondcell.specimen.bonds import Material
+from bondcell.specimen.relaxation import specimen_relaxation
+from bondcell.specimen.specimen import specimen
 
 SERIES = Prony(weights=[0.5, 0.3], times=[1.0, 100.0], relative_to="instantaneous")
 TIME = [0.0, 0.3, 30.0, 1e6]

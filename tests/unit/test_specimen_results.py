@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from bondcell.report.specimen_part import specimen_part
-from bondcell.scene import parse_scene
-from bondcell.specimen_names import METHODS
-from bondcell.specimen_results import combine
-from bondcell.specimen_run import run_part
-from bondcell.specimen_view import error_table
+from bondcell.scenes.scene import parse_scene
+from bondcell.specimen.names import METHODS
+from bondcell.specimen.results import combine
+from bondcell.specimen.run import run_part
+from bondcell.specimen.view import error_table
 from bondcell.status import Status
 
 LATTICES = ["lattice_paper", "lattice_fsi"]

@@ -8,7 +8,7 @@ from bondcell.lattice.lattice import lattice
 from bondcell.lattice.packing import packing
 from bondcell.lattice.solve import solve
 from bondcell.solid.tets import MATRIX, second_order
-from bondcell.specimen_vtk import write_lattice, write_solid
+from bondcell.specimen.vtk import write_lattice, write_solid
 
 
 def test_solid(tmp_path):

@@ -8,20 +8,20 @@ import pandas as pd
 import pytest
 import xarray as xr
 
-from bondcell.batch_files import write_batch
-from bondcell.batch_plan import plan
-from bondcell.collect import collect, collect_other_loads
 from bondcell.figures import draw_scene
 from bondcell.figures.stability import draw_stability
-from bondcell.load_groups import read_loads
-from bondcell.reference_batch import compute_reference
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.batch_plan import plan
+from bondcell.jobs.collect import collect, collect_other_loads
+from bondcell.jobs.reference_batch import compute_reference
 from bondcell.report import write_report
 from bondcell.report.stability_part import stability_findings, stability_lines
-from bondcell.scene import load_scene, parse_scene
-from bondcell.stability import FLAGS, condition, stability_summary, stability_table
+from bondcell.results.load_groups import read_loads
+from bondcell.results.stability import FLAGS, condition, stability_summary, stability_table
+from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.study import build_study
 from bondcell.status import Status
 from bondcell.storage import write_dataset
-from bondcell.study import build_study
 
 PARAMS = Path(__file__).parents[2] / "params"
 SCENE = {

@@ -5,8 +5,8 @@ import pytest
 
 from bondcell.cell import UNITS
 from bondcell.inputs import cell_from_study
-from bondcell.scene import parse_scene
-from bondcell.study import build_study
+from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.study import build_study
 
 CELL = {
     "radius_i": "7.5 mm",

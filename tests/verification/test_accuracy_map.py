@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bondcell.accuracy_map import AXES, LOADS, SMALLEST, STEP, decode, shipped_map
-from bondcell.accuracy_map_build import exceedance, random_cells
 from bondcell.cell import Cell
 from bondcell.fem.reference import solve
 from bondcell.models import MODELS
 from bondcell.models.asked import ask
+from bondcell.results.accuracy_map import AXES, LOADS, SMALLEST, STEP, decode, shipped_map
+from bondcell.results.accuracy_map_build import exceedance, random_cells
 
 PARTICLES = (0.0, 0.25, 0.45)
 """Poisson's ratios of the particles in the atlas."""

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bondcell.errors import BoundExceeded, PointLost
-from bondcell.job_bounds import Bounds
+from bondcell.jobs.job_bounds import Bounds
 from bondcell.status import Status
 from bondcell.storage import read_dataset
 
@@ -72,7 +72,7 @@ def test_time_that_is_over_is_given_to_nobody():
 
 EARLIER = """\
 import sys, time
-from bondcell.job_bounds import Bounds
+from bondcell.jobs.job_bounds import Bounds
 bounds = Bounds(float(sys.argv[1]), 3000.0, attempt=1, attempts=3)
 with bounds.held():
     bounds.bounded(bytearray)(4 * 10**9) if sys.argv[2] == "memory" else time.sleep(60)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.specimen_view import error_table, read_specimen
+from bondcell.specimen.view import error_table, read_specimen
 from bondcell.storage import read_dataset
 
 SPECIMEN = """\

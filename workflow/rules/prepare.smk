@@ -26,7 +26,7 @@ def stop_planning(errors):
 @cache
 def load(path):
     """Read a scene, or give back what is wrong with it."""
-    from bondcell.scene import load_scene
+    from bondcell.scenes.scene import load_scene
 
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)
@@ -47,7 +47,7 @@ def scene_of(wildcards):
 @cache
 def study_scenes():
     """The scenes of the default study, all of them sound."""
-    from bondcell.study_list import load_study_list
+    from bondcell.scenes.study_list import load_study_list
 
     try:
         names = load_study_list("params/study.yaml")
@@ -62,7 +62,7 @@ def study_scenes():
 
 def batch_files(scene, method):
     """Files of the batches of a scene by a method (analytic, fe, relaxation)."""
-    from bondcell.batch_plan import plan
+    from bondcell.jobs.batch_plan import plan
 
     names = [batch.name for batch in plan(scene) if batch.method.split("_")[0] == method]
     return checked([f"results/{scene.name}/batches/{name}.nc" for name in names])

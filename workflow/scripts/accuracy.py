@@ -1,8 +1,8 @@
 """Error of each model against the reference."""
 
-from bondcell.accuracy import accuracy_of_loads
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
+from bondcell.jobs.job import job
+from bondcell.results.accuracy import accuracy_of_loads
+from bondcell.results.load_groups import read_loads
 from bondcell.storage import replacing
 
 with job(f"{snakemake.wildcards.scene}: accuracy.csv") as log:

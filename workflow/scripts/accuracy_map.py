@@ -6,10 +6,10 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 from pathlib import Path
 
-from bondcell.accuracy_map_build import build
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
+from bondcell.jobs.job import job
 from bondcell.provenance import machine, software
+from bondcell.results.accuracy_map_build import build
+from bondcell.results.load_groups import read_loads
 from bondcell.storage import replacing
 
 with job("accuracy map") as log:

@@ -1,12 +1,12 @@
 """Analytic models of a scene at the points of one batch."""
 
-from bondcell.analytic_batch import compute_analytic
-from bondcell.batch_files import describe, write_batch
-from bondcell.batches import Batch
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.result_names import models_with
-from bondcell.study import build_study
+from bondcell.jobs.analytic_batch import compute_analytic
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import describe, write_batch
+from bondcell.jobs.job import job
+from bondcell.results.names import models_with
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.study import build_study
 
 batch = Batch.parse(f"analytic_{snakemake.wildcards.part}")
 with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:

@@ -1,8 +1,8 @@
 """Error by region, the cheapest good models, error against run time of an atlas."""
 
-from bondcell.atlas import atlas_tables
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
+from bondcell.jobs.job import job
+from bondcell.results.atlas import atlas_tables
+from bondcell.results.load_groups import read_loads
 from bondcell.storage import replacing
 
 with job(f"{snakemake.wildcards.scene}: atlas tables") as log:

@@ -1,9 +1,9 @@
 """The bonds' own series of a scene, for discrete element codes."""
 
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
-from bondcell.planned_scene import planned_scene
-from bondcell.relaxation_bonds import bond_series, bond_table
+from bondcell.jobs.job import job
+from bondcell.results.load_groups import read_loads
+from bondcell.results.relaxation_bonds import bond_series, bond_table
+from bondcell.scenes.planned_scene import planned_scene
 from bondcell.storage import replacing, write_dataset
 
 with job(f"{snakemake.wildcards.scene}: bond_series.csv") as log:

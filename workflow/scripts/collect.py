@@ -1,12 +1,12 @@
 """A scene's batches into one file."""
 
-from bondcell.collect import collect, collect_convergence, collect_other_loads
-from bondcell.collect_relaxation import collect_methods
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.specimen_files import collect_specimen
+from bondcell.jobs.collect import collect, collect_convergence, collect_other_loads
+from bondcell.jobs.collect_relaxation import collect_methods
+from bondcell.jobs.job import job
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.study import build_study
+from bondcell.specimen.files import collect_specimen
 from bondcell.storage import write_dataset
-from bondcell.study import build_study
 
 files = snakemake.input
 with job(f"{snakemake.wildcards.scene}: collect") as log:

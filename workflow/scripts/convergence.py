@@ -4,11 +4,11 @@ import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from bondcell.batch_files import write_batch
-from bondcell.convergence_run import run_convergence
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.convergence_run import run_convergence
+from bondcell.jobs.job import job
 from bondcell.provenance import measuring
+from bondcell.scenes.planned_scene import planned_scene
 
 with job(f"{snakemake.wildcards.scene}: convergence study") as log:
     log.unit = "cases"

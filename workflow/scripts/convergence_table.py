@@ -2,10 +2,10 @@
 
 import pandas as pd
 
-from bondcell.convergence import convergence_table
-from bondcell.jobs import job
-from bondcell.relaxation_names import METHODS
-from bondcell.relaxation_tables import methods_table
+from bondcell.jobs.job import job
+from bondcell.results.convergence import convergence_table
+from bondcell.results.relaxation_names import METHODS
+from bondcell.results.relaxation_tables import methods_table
 from bondcell.storage import read_dataset, replacing
 
 with job(f"{snakemake.wildcards.scene}: convergence.csv") as log:

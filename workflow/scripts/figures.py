@@ -4,11 +4,11 @@ from pathlib import Path
 
 from bondcell.figures import draw_scene
 from bondcell.figures.specimen import draw_specimen
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
-from bondcell.planned_scene import planned_scene
-from bondcell.relaxation_names import METHODS
-from bondcell.specimen_view import read_specimen
+from bondcell.jobs.job import job
+from bondcell.results.load_groups import read_loads
+from bondcell.results.relaxation_names import METHODS
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.specimen.view import read_specimen
 from bondcell.storage import read_dataset
 
 with job(f"{snakemake.wildcards.scene}: figures") as log:

@@ -1,12 +1,12 @@
 """Finite element reference of a scene at the points of one batch."""
 
-from bondcell.batch_files import describe, write_batch
-from bondcell.batches import Batch
-from bondcell.job_bounds import Bounds
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.reference_batch import compute_reference
-from bondcell.study import build_study
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import describe, write_batch
+from bondcell.jobs.job import job
+from bondcell.jobs.job_bounds import Bounds
+from bondcell.jobs.reference_batch import compute_reference
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.study import build_study
 
 batch = Batch.parse(f"fe_{snakemake.wildcards.bc}_{snakemake.wildcards.part}")
 bound = snakemake.resources

@@ -1,12 +1,12 @@
 """Relaxation by the finite element reference at the points of one batch."""
 
 import bondcell.fem.relaxation_pencil  # noqa: F401  (an edit of it runs this job again)
-from bondcell.batch_files import write_batch
-from bondcell.batches import Batch
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.relaxation_batch import asked_fe, compute_relaxation
-from bondcell.study import build_study
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.job import job
+from bondcell.jobs.relaxation_batch import asked_fe, compute_relaxation
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.study import build_study
 
 load = snakemake.wildcards.load
 batch = Batch.parse(f"relaxation_fe_{load}_{snakemake.wildcards.part}")

@@ -4,10 +4,10 @@ import os
 
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from bondcell.batch_files import write_batch
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.relaxation_methods import run_methods
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.job import job
+from bondcell.jobs.relaxation_methods import run_methods
+from bondcell.scenes.planned_scene import planned_scene
 
 with job(f"{snakemake.wildcards.scene}: methods in time") as log:
     log.unit = "cases"

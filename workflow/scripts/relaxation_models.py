@@ -1,11 +1,11 @@
 """Relaxation by a scene's analytic models at the points of one batch."""
 
-from bondcell.batch_files import write_batch
-from bondcell.batches import Batch
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.relaxation_batch import asked_models, compute_relaxation
-from bondcell.study import build_study
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.job import job
+from bondcell.jobs.relaxation_batch import asked_models, compute_relaxation
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.study import build_study
 
 load = snakemake.wildcards.load
 batch = Batch.parse(f"relaxation_models_{load}_{snakemake.wildcards.part}")

@@ -1,8 +1,8 @@
 """Accuracy over time, or stability, of a scene's relaxation."""
 
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
-from bondcell.relaxation_tables import accuracy_over_time, relaxation_stability
+from bondcell.jobs.job import job
+from bondcell.results.load_groups import read_loads
+from bondcell.results.relaxation_tables import accuracy_over_time, relaxation_stability
 from bondcell.storage import replacing
 
 kinds = {"accuracy_over_time": accuracy_over_time, "relaxation_stability": relaxation_stability}

@@ -2,11 +2,11 @@
 
 from pathlib import Path
 
-from bondcell.jobs import job
-from bondcell.kept_results import was_computed
-from bondcell.planned_scene import planned_scene
+from bondcell.jobs.job import job
 from bondcell.report import write_report
-from bondcell.scene import load_scene
+from bondcell.results.kept import was_computed
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.scenes.scene import load_scene
 from bondcell.storage import replacing
 
 with job("report") as log:

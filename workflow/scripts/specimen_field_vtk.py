@@ -1,9 +1,9 @@
 """The solid's field under one loading, for ParaView."""
 
-from bondcell.batch_files import read_batch
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
-from bondcell.specimen_vtk import write_field
+from bondcell.jobs.batch_files import read_batch
+from bondcell.jobs.job import job
+from bondcell.scenes.planned_scene import planned_scene
+from bondcell.specimen.vtk import write_field
 from bondcell.storage import replacing
 
 with job(f"{snakemake.wildcards.scene}: solid, {snakemake.wildcards.loading}"):

@@ -5,13 +5,15 @@ from pathlib import Path
 
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
-from bondcell import specimen_finite_strain, specimen_relaxation, specimen_solid  # noqa: F401
-from bondcell.batch_files import write_batch
 from bondcell.fem import reduced_basis, reference, structured, sweep  # noqa: F401
-from bondcell.jobs import job
-from bondcell.planned_scene import planned_scene
+from bondcell.jobs.batch_files import write_batch
+from bondcell.jobs.job import job
+from bondcell.scenes.planned_scene import planned_scene
 from bondcell.solid import finite_strain, moduli, pocket  # noqa: F401
-from bondcell.specimen_run import run_part
+from bondcell.specimen import finite_strain as specimen_finite_strain  # noqa: F401
+from bondcell.specimen import relaxation as specimen_relaxation  # noqa: F401
+from bondcell.specimen import solid_half as specimen_solid  # noqa: F401
+from bondcell.specimen.run import run_part
 
 part = Path(snakemake.output[0]).stem.removeprefix("specimen_")
 with job(f"{snakemake.wildcards.scene}: {part}") as log:

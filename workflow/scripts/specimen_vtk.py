@@ -1,8 +1,8 @@
 """The fullest lattice of a specimen under one loading, for ParaView."""
 
-from bondcell.jobs import job
-from bondcell.specimen_view import first_walls, fullest
-from bondcell.specimen_vtk import write_lattice_result
+from bondcell.jobs.job import job
+from bondcell.specimen.view import first_walls, fullest
+from bondcell.specimen.vtk import write_lattice_result
 from bondcell.storage import read_dataset, replacing
 
 with job(f"{snakemake.wildcards.scene}: lattice, {snakemake.wildcards.loading}"):

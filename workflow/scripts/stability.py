@@ -1,8 +1,8 @@
 """Every point of the reference with its estimate, flag and cost, worst first."""
 
-from bondcell.jobs import job
-from bondcell.load_groups import read_loads
-from bondcell.stability import stability_table
+from bondcell.jobs.job import job
+from bondcell.results.load_groups import read_loads
+from bondcell.results.stability import stability_table
 from bondcell.storage import replacing
 
 with job(f"{snakemake.wildcards.scene}: stability.csv") as log:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from bondcell.fem.surrogate_build import build
-from bondcell.jobs import job
+from bondcell.jobs.job import job
 from bondcell.provenance import machine, software
 from bondcell.storage import replacing
 

@@ -85,7 +85,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _error(text: str) -> tuple[float, list[Violation]]:
     from bondcell.advice import ERROR_RANGE, ERRORS
-    from bondcell.quantities import NotAllowed, parse_quantity
+    from bondcell.scenes.quantities import NotAllowed, parse_quantity
 
     try:
         error = parse_quantity(text, "1")

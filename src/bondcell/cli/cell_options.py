@@ -6,8 +6,8 @@ import argparse
 
 from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell
 from bondcell.errors import InputError, Violation
-from bondcell.likely_units import unlikely
-from bondcell.quantities import EXAMPLES, NotAllowed, parse_quantity
+from bondcell.scenes.likely_units import unlikely
+from bondcell.scenes.quantities import EXAMPLES, NotAllowed, parse_quantity
 
 OPTIONS = {
     "radius_i": "--radius",

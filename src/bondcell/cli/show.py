@@ -36,7 +36,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the overview; draw if asked."""
-    from bondcell.load_groups import read_loads
+    from bondcell.results.load_groups import read_loads
 
     study, *others = read_loads(arguments.file).values()
     if "softest" in study:
@@ -57,14 +57,14 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _specimen(study: xr.Dataset, path: str) -> str:
     """Every method of a specimen beside the best known energy."""
-    from bondcell.specimen_view import error_table, read_specimen
+    from bondcell.specimen.view import error_table, read_specimen
 
     table = error_table(read_specimen(path))
     return f"{_heading(study, path)}\n\n{table.to_string(index=False, na_rep='-')}"
 
 
 def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> None:
-    from bondcell.result_view import model_names
+    from bondcell.results.view import model_names
 
     stiffness = study.get("stiffness")
     numeric = stiffness is None or stiffness.dtype.kind in "iuf"
@@ -74,7 +74,7 @@ def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> 
 
 
 def _check_plot(study: xr.Dataset, arguments: argparse.Namespace) -> None:
-    from bondcell.result_view import swept_axes
+    from bondcell.results.view import swept_axes
 
     axes = swept_axes(study)
     violations = []
@@ -104,8 +104,8 @@ def _overview(study: xr.Dataset, path: str) -> str:
 
 def _results(study: xr.Dataset) -> str:
     """Values and errors of the models under one load."""
-    from bondcell.accuracy import accuracy_table
-    from bondcell.result_view import load_name
+    from bondcell.results.accuracy import accuracy_table
+    from bondcell.results.view import load_name
 
     blocks = [f"load {load_name(study)}\n{_models(study)}"]
     table = accuracy_table(study)
@@ -125,7 +125,7 @@ def _axes(study: xr.Dataset) -> str:
     """Every dimension, then every input that does not vary."""
     from bondcell.cell import UNITS
     from bondcell.cli.text_table import text_table
-    from bondcell.result_view import axis_unit, axis_values
+    from bondcell.results.view import axis_unit, axis_values
     from bondcell.wording import meaning, quantity
 
     rows = []
@@ -144,7 +144,7 @@ def _axes(study: xr.Dataset) -> str:
 
 def _models(study: xr.Dataset) -> str:
     from bondcell.cli.text_table import text_table
-    from bondcell.result_view import model_names, stiffness_unit
+    from bondcell.results.view import model_names, stiffness_unit
     from bondcell.wording import quantity
 
     unit = stiffness_unit(study)
@@ -185,7 +185,7 @@ def _largest(here: xr.Dataset, name: str, form: str) -> str:
 
 def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
     from bondcell.cli.text_table import text_table
-    from bondcell.result_view import axis_unit, swept_axes
+    from bondcell.results.view import axis_unit, swept_axes
     from bondcell.wording import at, percent
 
     axes = swept_axes(study)
@@ -210,7 +210,7 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
 def _ladders(convergence: xr.Dataset) -> str:
     """Coarsest and finest error of each discretisation, and the error of each analytic model."""
     from bondcell.cli.text_table import text_table
-    from bondcell.convergence import convergence_table
+    from bondcell.results.convergence import convergence_table
     from bondcell.wording import number, quantity
 
     rows = []
@@ -242,7 +242,7 @@ def _draw(study: xr.Dataset, arguments: argparse.Namespace) -> None:
     from bondcell.figures.bars import draw_bars
     from bondcell.figures.curves import draw_curves
     from bondcell.figures.style import drawing_style
-    from bondcell.result_view import swept_axes
+    from bondcell.results.view import swept_axes
     from bondcell.storage import replacing
 
     with drawing_style():

@@ -114,7 +114,7 @@ def _model_violations(models: list[str], load: str) -> list[Violation]:
 
 
 def _reference_options(arguments: argparse.Namespace) -> tuple[dict[str, Any], list[Violation]]:
-    from bondcell.quantities import NotAllowed, parse_quantity
+    from bondcell.scenes.quantities import NotAllowed, parse_quantity
 
     bc, tolerance = arguments.bc or BOUNDARY_CONDITIONS[0], DEFAULT_TOLERANCE
     violations = []

@@ -21,7 +21,7 @@ def add_to(commands: Any) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print every violation on stderr and the good files on stdout; 2 if any file is bad."""
-    from bondcell.validate import validate_file
+    from bondcell.scenes.validate import validate_file
 
     status = 0
     for path in arguments.files:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bondcell.atlas import accuracy_by_region, error_against_time
 from bondcell.figures.atlas_maps import atlas_maps
 from bondcell.figures.atlas_time import draw_error_against_time
 from bondcell.figures.bars import draw_bars
@@ -17,12 +16,13 @@ from bondcell.figures.relaxation import relaxation_drawings
 from bondcell.figures.relaxation_checks import draw_checks, draw_methods
 from bondcell.figures.stability import draw_stability
 from bondcell.figures.style import Drawing, drawing_style, save
-from bondcell.result_view import load_name, model_names, swept_axes
+from bondcell.results.atlas import accuracy_by_region, error_against_time
+from bondcell.results.view import load_name, model_names, swept_axes
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from bondcell.scene import Scene
+    from bondcell.scenes.scene import Scene
 
 
 def draw_scene(

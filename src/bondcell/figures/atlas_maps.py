@@ -15,9 +15,9 @@ from matplotlib.colors import BoundaryNorm, Colormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Rectangle
 
-from bondcell.atlas import is_formula, valid_everywhere, worst_errors
 from bondcell.figures.style import LIGHT, Drawing, marker_style, mathtext, new_figure
-from bondcell.result_view import analytic_names
+from bondcell.results.atlas import is_formula, valid_everywhere, worst_errors
+from bondcell.results.view import analytic_names
 from bondcell.wording import listed, meaning, model_name, number, percent, symbol
 
 BOUNDS = (1e-4, 1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3, 1.0)

@@ -28,7 +28,7 @@ def draw_error_against_time(table: pd.DataFrame) -> Drawing:
     Parameters
     ----------
     table
-        See `bondcell.atlas.error_against_time`.
+        See `bondcell.results.atlas.error_against_time`.
     """
     loads = list(dict.fromkeys(table["load"]))
     figure = new_figure(8.6, 1.0 + 2.9 * -(-len(loads) // 2))

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from bondcell.figures.style import GREY, LINES, REFERENCES, Drawing, mathtext, new_figure
-from bondcell.result_view import (
+from bondcell.results.view import (
     is_reference,
     load_name,
     model_names,

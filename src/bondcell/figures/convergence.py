@@ -12,8 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
-from bondcell.convergence import BASIS, GRADED, STRUCTURED, TRIANGLES, convergence_table
 from bondcell.figures.style import BLACK, Drawing, marker_style, new_figure
+from bondcell.results.convergence import BASIS, GRADED, STRUCTURED, TRIANGLES, convergence_table
 from bondcell.wording import case_name, ladder_name, listed, model_name, number, quantity
 
 LADDERS: dict[str, dict[str, Any]] = {

@@ -10,10 +10,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullLocator
 
-from bondcell.accuracy import signed_error
 from bondcell.figures.layout import Layout, Panel, axis_label, is_logarithmic, line_layout
 from bondcell.figures.style import PARTS, Drawing, line_style, marker_style, mathtext, new_figure
-from bondcell.result_view import (
+from bondcell.results.accuracy import signed_error
+from bondcell.results.view import (
     analytic_names,
     axis_values,
     load_name,

@@ -15,10 +15,10 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import NullLocator
 
-from bondcell.accuracy import signed_error
 from bondcell.figures.layout import Layout, Panel, axis_label, is_logarithmic, map_layout
 from bondcell.figures.style import Drawing, new_figure
-from bondcell.result_view import analytic_names, axis_values, reference_names
+from bondcell.results.accuracy import signed_error
+from bondcell.results.view import analytic_names, axis_values, reference_names
 from bondcell.wording import listed, meaning, model_name, percent, symbol
 
 BOUNDS = (-1.0, -0.3, -0.1, -0.03, -0.01, 0.01, 0.03, 0.1, 0.3, 1.0)

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bondcell.accuracy import SMALL_AXIS
 from bondcell.figures.style import mathtext
-from bondcell.result_view import axis_unit, axis_values, swept_axes
+from bondcell.results.accuracy import SMALL_AXIS
+from bondcell.results.view import axis_unit, axis_values, swept_axes
 from bondcell.wording import at, meaning, quantity, symbol, unit_text
 
 PANELS = 3

@@ -20,15 +20,20 @@ from bondcell.figures.style import (
     mathtext,
     new_figure,
 )
-from bondcell.relaxation_tables import FADED, error_over_time, relaxation_axes, shortcut_error
-from bondcell.relaxation_view import (
+from bondcell.results.relaxation_tables import (
+    FADED,
+    error_over_time,
+    relaxation_axes,
+    shortcut_error,
+)
+from bondcell.results.relaxation_view import (
     convention_words,
     middle_point,
     point_words,
     series_words,
     shown_series,
 )
-from bondcell.result_view import (
+from bondcell.results.view import (
     REFERENCE,
     analytic_names,
     axis_unit,

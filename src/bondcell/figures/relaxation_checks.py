@@ -11,8 +11,8 @@ import xarray as xr
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bondcell.figures.style import BLACK, GREY, Drawing, marker_style, new_figure
-from bondcell.relaxation_tables import methods_table, relaxation_stability
-from bondcell.relaxation_view import series_words
+from bondcell.results.relaxation_tables import methods_table, relaxation_stability
+from bondcell.results.relaxation_view import series_words
 from bondcell.wording import METHODS, model_name, number, percent, quantity
 
 STYLES: dict[str, dict[str, Any]] = {

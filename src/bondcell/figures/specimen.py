@@ -12,7 +12,7 @@ from bondcell.figures.specimen_more import draw_finite_strain, draw_relaxation
 from bondcell.figures.specimen_pair import draw_pair
 from bondcell.figures.specimen_time import draw_time
 from bondcell.figures.style import Drawing, drawing_style, save
-from bondcell.specimen_view import Results
+from bondcell.specimen.view import Results
 
 
 def draw_specimen(results: Results, folder: Path) -> list[Path]:
@@ -21,7 +21,7 @@ def draw_specimen(results: Results, folder: Path) -> list[Path]:
     Parameters
     ----------
     results
-        See `bondcell.specimen_view.read_specimen`.
+        See `bondcell.specimen.view.read_specimen`.
     folder
         Where the figures go.
     """

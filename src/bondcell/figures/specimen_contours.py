@@ -11,7 +11,7 @@ from bondcell.cell import FloatArray
 from bondcell.figures.specimen_style import MM, centres, draw_particles, frame
 from bondcell.figures.style import BLACK, Drawing, new_figure
 from bondcell.lattice.specimen_geometry import BOX, RADIUS
-from bondcell.specimen_view import NAMES, best_solid, first_walls, fullest
+from bondcell.specimen.view import NAMES, best_solid, first_walls, fullest
 from bondcell.wording import percent, quantity
 
 PIXEL = 0.2e-3

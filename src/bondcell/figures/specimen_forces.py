@@ -12,7 +12,7 @@ from matplotlib.collections import LineCollection
 from bondcell.cell import FloatArray
 from bondcell.figures.specimen_style import MM, centres, draw_particles, frame
 from bondcell.figures.style import GREY, LIGHT, Drawing, new_figure
-from bondcell.specimen_view import NAMES, first_walls, fullest
+from bondcell.specimen.view import NAMES, first_walls, fullest
 from bondcell.wording import number
 
 WIDEST = 6.0

@@ -9,8 +9,8 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from bondcell.figures.style import BLACK, GREY, Drawing, new_figure
-from bondcell.specimen_names import LATTICES
-from bondcell.specimen_view import NAMES, first_walls, rows_of
+from bondcell.specimen.names import LATTICES
+from bondcell.specimen.view import NAMES, first_walls, rows_of
 from bondcell.wording import percent
 
 COLOURS = {

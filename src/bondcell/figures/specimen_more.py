@@ -7,7 +7,7 @@ import xarray as xr
 
 from bondcell.figures.specimen_style import METHODS
 from bondcell.figures.style import BLACK, Drawing, new_figure
-from bondcell.specimen_view import NAMES
+from bondcell.specimen.view import NAMES
 from bondcell.wording import number, percent, quantity
 
 

@@ -13,7 +13,7 @@ from bondcell.cell import FloatArray
 from bondcell.figures.specimen_style import MM, centres, draw_particles
 from bondcell.figures.style import BLACK, GREY, Drawing, new_figure
 from bondcell.lattice.specimen_geometry import RADIUS
-from bondcell.specimen_view import NAMES, best_solid, first_walls, fullest
+from bondcell.specimen.view import NAMES, best_solid, first_walls, fullest
 from bondcell.wording import number, quantity
 
 PAIR = (6, 7)

@@ -11,7 +11,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bondcell.figures.specimen_style import METHODS
 from bondcell.figures.style import GREY, Drawing, new_figure
-from bondcell.specimen_view import NAMES, Results, error_table, first_walls
+from bondcell.specimen.view import NAMES, Results, error_table, first_walls
 from bondcell.wording import percent, quantity
 
 

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from bondcell.figures.style import BLACK, Drawing, new_figure
-from bondcell.stability import stability_table
+from bondcell.results.stability import stability_table
 from bondcell.wording import listed, number, quantity
 
 FLAGS: dict[str, dict[str, Any]] = {

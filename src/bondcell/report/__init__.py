@@ -18,7 +18,7 @@ from bondcell.report.sections import Section, build_section
 from bondcell.wording import SYMBOLS, listed, model_name
 
 if TYPE_CHECKING:
-    from bondcell.scene import Scene
+    from bondcell.scenes.scene import Scene
 
 HEADLINES = 6
 """Most findings on the first screen."""

@@ -8,7 +8,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from bondcell.atlas import (
+from bondcell.models import MODELS
+from bondcell.report.findings import Finding
+from bondcell.report.tables import Table
+from bondcell.results.atlas import (
     ANY,
     BAND_WORDS,
     BANDS,
@@ -19,10 +22,7 @@ from bondcell.atlas import (
     valid_everywhere,
     worst_errors,
 )
-from bondcell.models import MODELS
-from bondcell.report.findings import Finding
-from bondcell.report.tables import Table
-from bondcell.result_view import REFERENCE, analytic_names
+from bondcell.results.view import REFERENCE, analytic_names
 from bondcell.wording import listed, model_name, model_phrase, percent, quantity
 
 PAPER, BEST = "fsi", "film"
@@ -43,7 +43,7 @@ def atlas_findings(loads: Mapping[str, xr.Dataset], table: pd.DataFrame) -> Iter
     loads
         Load -> result of an atlas.
     table
-        See `bondcell.atlas.accuracy_by_region`.
+        See `bondcell.results.atlas.accuracy_by_region`.
     """
     yield from _paper(table)
     yield from _successor(table)
@@ -151,7 +151,7 @@ def atlas_lines(table: pd.DataFrame) -> list[Table]:
     Parameters
     ----------
     table
-        See `bondcell.atlas.accuracy_by_region`.
+        See `bondcell.results.atlas.accuracy_by_region`.
     """
     loads = dict.fromkeys(table["load"])
     regions = [_region_table(str(load), table[table["load"] == load]) for load in loads]

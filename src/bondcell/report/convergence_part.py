@@ -9,7 +9,9 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from bondcell.convergence import (
+from bondcell.report.findings import Finding
+from bondcell.report.tables import Table
+from bondcell.results.convergence import (
     BASIS,
     GRADED,
     STAGES,
@@ -17,8 +19,6 @@ from bondcell.convergence import (
     TRIANGLES,
     convergence_table,
 )
-from bondcell.report.findings import Finding
-from bondcell.report.tables import Table
 from bondcell.wording import (
     case_name,
     ladder_name,

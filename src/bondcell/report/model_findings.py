@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from bondcell.accuracy import signed_error
 from bondcell.models import MODELS
 from bondcell.report.findings import Finding
-from bondcell.result_view import axis_unit, axis_values, reference_names
+from bondcell.results.accuracy import signed_error
+from bondcell.results.view import axis_unit, axis_values, reference_names
 from bondcell.wording import at, model_name, model_phrase, number, percent
 
 POISSON = "poisson_m"

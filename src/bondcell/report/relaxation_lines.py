@@ -9,10 +9,10 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.outputs import STIFFNESS_UNITS
-from bondcell.relaxation_tables import relaxation_axes
-from bondcell.relaxation_view import convention_words, series_words
 from bondcell.report.tables import Table
-from bondcell.result_view import axis_unit
+from bondcell.results.relaxation_tables import relaxation_axes
+from bondcell.results.relaxation_view import convention_words, series_words
+from bondcell.results.view import axis_unit
 from bondcell.wording import METHODS, at, listed, model_name, number, percent, quantity
 
 MOST_CHECKS = 20

@@ -10,9 +10,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from bondcell.relaxation_names import METHODS as METHODS_GROUP
-from bondcell.relaxation_tables import accuracy_over_time, methods_table, relaxation_stability
-from bondcell.relaxation_view import convention_words, series_words
 from bondcell.report.findings import Finding
 from bondcell.report.relaxation_lines import (
     accuracy_lines,
@@ -23,6 +20,13 @@ from bondcell.report.relaxation_lines import (
     stability_lines,
 )
 from bondcell.report.tables import Table
+from bondcell.results.relaxation_names import METHODS as METHODS_GROUP
+from bondcell.results.relaxation_tables import (
+    accuracy_over_time,
+    methods_table,
+    relaxation_stability,
+)
+from bondcell.results.relaxation_view import convention_words, series_words
 from bondcell.storage import read_dataset
 from bondcell.wording import METHODS, listed, model_phrase, number, percent, quantity
 
@@ -38,7 +42,7 @@ class Relaxing:
     study
         Result under the first load.
     accuracy, stability
-        See `bondcell.relaxation_tables`; empty where there is nothing to compare or check.
+        See `bondcell.results.relaxation_tables`; empty where there is nothing to compare or check.
     methods
         Convergence table of the methods in time, empty without.
     bonds

@@ -8,8 +8,6 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
-from bondcell.accuracy import accuracy_table
-from bondcell.load_groups import read_loads
 from bondcell.report.atlas_part import atlas_part
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
@@ -24,13 +22,15 @@ from bondcell.report.specimen_part import specimen_part
 from bondcell.report.stability_part import stability_findings, stability_lines
 from bondcell.report.sweep_findings import sweep_findings
 from bondcell.report.tables import Table, accuracy_lines, influence_lines, value_lines
-from bondcell.result_view import model_names
-from bondcell.specimen_view import read_specimen
-from bondcell.stability import stability_table
+from bondcell.results.accuracy import accuracy_table
+from bondcell.results.load_groups import read_loads
+from bondcell.results.stability import stability_table
+from bondcell.results.view import model_names
+from bondcell.specimen.view import read_specimen
 from bondcell.storage import read_dataset
 
 if TYPE_CHECKING:
-    from bondcell.scene import Scene
+    from bondcell.scenes.scene import Scene
 
 FILES = (
     "study.nc",

@@ -10,7 +10,7 @@ from bondcell.cell import LONG_NAMES
 from bondcell.wording import MEANINGS, SYMBOLS, listed, model_name, number
 
 if TYPE_CHECKING:
-    from bondcell.scene import Scene
+    from bondcell.scenes.scene import Scene
 
 Line = tuple[str, str]
 

@@ -9,9 +9,9 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.report.tables import Table
-from bondcell.specimen_names import LATTICES
-from bondcell.specimen_paper import PAPER_NODES, PRINTED, printed_stiffness
-from bondcell.specimen_view import NAMES, Results, first_walls, rows_of
+from bondcell.specimen.names import LATTICES
+from bondcell.specimen.paper import PAPER_NODES, PRINTED, printed_stiffness
+from bondcell.specimen.view import NAMES, Results, first_walls, rows_of
 from bondcell.wording import number, percent, quantity
 
 
@@ -23,7 +23,7 @@ def specimen_lines(results: Results, table: pd.DataFrame) -> list[Table]:
     results
         All groups.
     table
-        See `bondcell.specimen_view.error_table`.
+        See `bondcell.specimen.view.error_table`.
     """
     study = results[""]
     return [*_errors(study, table), _modes(study), _printed(study)]

@@ -11,9 +11,9 @@ import xarray as xr
 from bondcell.report.findings import Finding
 from bondcell.report.specimen_lines import specimen_lines
 from bondcell.report.tables import Table
-from bondcell.specimen_names import LATTICES, SOLIDS
-from bondcell.specimen_paper import PAPER_RATIO, PRINTED, printed_stiffness
-from bondcell.specimen_view import (
+from bondcell.specimen.names import LATTICES, SOLIDS
+from bondcell.specimen.paper import PAPER_RATIO, PRINTED, printed_stiffness
+from bondcell.specimen.view import (
     NAMES,
     Results,
     error_table,
@@ -36,7 +36,7 @@ def specimen_part(results: Results) -> tuple[list[Finding], list[Table]]:
     Parameters
     ----------
     results
-        See `bondcell.specimen_view.read_specimen`.
+        See `bondcell.specimen.view.read_specimen`.
     """
     study, table = results[""], error_table(results)
     found = [

@@ -11,8 +11,8 @@ import xarray as xr
 from bondcell.outputs import STIFFNESS_UNITS
 from bondcell.report.findings import Finding
 from bondcell.report.tables import Table
-from bondcell.result_view import axis_unit
-from bondcell.stability import FLAGS, stability_summary
+from bondcell.results.stability import FLAGS, stability_summary
+from bondcell.results.view import axis_unit
 from bondcell.status import Status
 from bondcell.wording import at, listed, number, percent, quantity, symbol
 
@@ -39,7 +39,7 @@ def stability_findings(table: pd.DataFrame, study: xr.Dataset) -> list[Finding]:
     Parameters
     ----------
     table
-        See `bondcell.stability.stability_table`.
+        See `bondcell.results.stability.stability_table`.
     study
         A result of the scene, for the units of its axes.
     """

@@ -8,7 +8,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from bondcell.particle_influence import PAPER_RATIO, RATIO_AXIS, particles_negligible_from
 from bondcell.report.findings import Finding
 from bondcell.report.model_findings import (
     POISSON,
@@ -17,7 +16,8 @@ from bondcell.report.model_findings import (
     ranking,
     series_model,
 )
-from bondcell.result_view import analytic_names, model_names, reference_names, swept_axes
+from bondcell.results.particle_influence import PAPER_RATIO, RATIO_AXIS, particles_negligible_from
+from bondcell.results.view import analytic_names, model_names, reference_names, swept_axes
 from bondcell.status import Status
 from bondcell.wording import at, listed, model_name, number, percent, quantity, symbol
 

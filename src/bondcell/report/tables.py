@@ -9,8 +9,8 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.figures.layout import line_layout
-from bondcell.particle_influence import RATIO_AXIS, particles_negligible_from
-from bondcell.result_view import (
+from bondcell.results.particle_influence import RATIO_AXIS, particles_negligible_from
+from bondcell.results.view import (
     axis_unit,
     axis_values,
     load_name,

@@ -1,0 +1,140 @@
+"""The files of a scene's jobs assembled into what its study.nc holds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from bondcell import provenance
+from bondcell.jobs.analytic_batch import compute_analytic
+from bondcell.jobs.batch import ANALYTIC, REFERENCE, Batch
+from bondcell.jobs.batch_files import read_batch
+from bondcell.jobs.collect_relaxation import collect_relaxation
+from bondcell.jobs.merge import merge
+from bondcell.outputs import DETAILS
+from bondcell.results.names import models_with, reference_variants, result_names
+from bondcell.status import Status
+
+if TYPE_CHECKING:
+    from bondcell.scenes.scene import Scene
+
+
+def collect(
+    scene: Scene,
+    study: xr.Dataset | None,
+    analytic: Sequence[Path],
+    reference: Sequence[Path],
+    load: str | None = None,
+    relaxation: Sequence[Path] = (),
+) -> xr.Dataset:
+    """Results at the points of a scene under one load with their provenance.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    study
+        Its inputs; None if nothing is evaluated at points.
+    analytic
+        Files of its analytic batches; without any the scene's models are evaluated here.
+    reference
+        Files of its finite element batches.
+    load
+        One of its loads, the first by default. Every load has the same models: one that does not
+        cover the load is NaN, flagged ``not_computed``.
+    relaxation
+        Files of its relaxation batches, if its matrix relaxes.
+
+    Raises
+    ------
+    DataError
+        A file is damaged, was computed for other parameters, or points are missing.
+    """
+    attributes = provenance.collect(scene)
+    if study is None:
+        return xr.Dataset(attrs=attributes)
+    load = load or scene.load
+    found = [read_batch(path, scene.models_digest) for path in analytic]
+    found += [read_batch(path, scene.reference_digest) for path in reference]
+    attributes |= machines(found)
+    batches = [batch for batch in found if batch.attrs["load"] == load]
+    models = models_with(scene, load)
+    if models and not any(set(models) & set(batch["model"].values) for batch in batches):
+        batches.append(compute_analytic(study, Batch(ANALYTIC), models, load, scene.contributions))
+    merged = merge(study, batches, labels(scene, load))
+    result = _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
+    if relaxation:
+        result = result.merge(collect_relaxation(scene, study, relaxation, load))
+    return result
+
+
+def collect_other_loads(
+    scene: Scene,
+    study: xr.Dataset | None,
+    analytic: Sequence[Path],
+    reference: Sequence[Path],
+    relaxation: Sequence[Path] = (),
+) -> dict[str, xr.Dataset]:
+    """Results under every load but the first, as groups of the scene's file: axes and outputs.
+
+    Parameters
+    ----------
+    scene, study, analytic, reference, relaxation
+        As in `collect`.
+    """
+    if study is None:
+        return {}
+    inputs = list(study.data_vars)
+    return {
+        load: collect(scene, study, analytic, reference, load, relaxation).drop_vars(inputs)
+        for load in scene.loads[1:]
+    }
+
+
+def collect_convergence(scene: Scene, files: Iterable[Path]) -> dict[str, xr.Dataset]:
+    """The group ``convergence`` of a scene's file, none if the scene has no such study.
+
+    Parameters
+    ----------
+    scene
+        The scene.
+    files
+        Its one file, or none.
+    """
+    groups = {}
+    for path in files:
+        groups["convergence"] = read_batch(path, scene.convergence_digest)
+    return groups
+
+
+def labels(scene: Scene, load: str | None = None) -> dict[str, str]:
+    """Name in the batch files -> name in the dimension ``model``, in the scene's order."""
+    load = load or scene.load
+    models = {name: name for name in models_with(scene, load)}
+    references = reference_variants(scene, load)
+    return models | {f"{REFERENCE}_{variant}": name for name, variant in references.items()}
+
+
+def _with_models(merged: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """Rows for models without the load as well, so that all loads share one dimension."""
+    if merged["model"].values.tolist() == names:
+        return merged
+    blank: dict[Any, Any] = {"status": Status.not_computed, "dof": 0, **DETAILS}
+    present = {name: value for name, value in blank.items() if name in merged}
+    full = merged.reindex(model=names, fill_value={**present, "stiffness": np.nan})
+    for name in present:
+        full[name] = full[name].astype(merged[name].dtype)
+    full["model"].attrs = merged["model"].attrs
+    return full
+
+
+def machines(datasets: Iterable[xr.Dataset]) -> dict[str, str]:
+    """The machines that computed the datasets, joined in one order where there were several."""
+    keys = list(provenance.machine())
+    found = dict.fromkeys(tuple(str(data.attrs[key]) for key in keys) for data in datasets)
+    columns = zip(*found, strict=True)
+    return {key: " | ".join(values) for key, values in zip(keys, columns, strict=False)}

@@ -1,0 +1,285 @@
+"""Relaxation of a scene at the points of one batch: curves, complex stiffness, series."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from bondcell.by_geometry import geometry_groups
+from bondcell.cell import Cell, FloatArray
+from bondcell.correspondence import correspondence
+from bondcell.inputs import cell_from_study
+from bondcell.jobs.batch import Batch, cell_at
+from bondcell.models import MODELS
+from bondcell.prony.chain import Chain
+from bondcell.prony.conventions import Relaxing
+from bondcell.prony.prony import Prony
+from bondcell.prony.shift import arrhenius, wlf
+from bondcell.relaxation import relaxation_series
+from bondcell.results.names import models_with, reference_variants
+from bondcell.results.relaxation_names import (
+    INDEX,
+    TERM_VARIABLES,
+    VARIABLES,
+    attributes,
+    with_equal_terms,
+)
+from bondcell.scenes.materials import Material
+from bondcell.scenes.prony_block import PronyBlock, SeriesCase
+from bondcell.status import Status
+
+if TYPE_CHECKING:
+    from bondcell.scenes.scene import Scene
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A model with its options, and what its row of the result is called."""
+
+    label: str
+    model: str
+    options: Mapping[str, Any]
+
+
+def asked_models(scene: Scene, load: str) -> list[Asked]:
+    """The scene's analytic models under a load."""
+    return [Asked(name, name, {}) for name in models_with(scene, load)]
+
+
+def asked_fe(scene: Scene, load: str) -> list[Asked]:
+    """The scene's reference under a load, once for each boundary condition."""
+    assert scene.reference is not None
+    tolerance = scene.reference.tolerance
+    return [
+        Asked(name, "fe", {"tolerance": tolerance} | ({"bc": variant} if load == "normal" else {}))
+        for name, variant in reference_variants(scene, load).items()
+    ]
+
+
+def compute_relaxation(
+    study: xr.Dataset,
+    batch: Batch,
+    block: PronyBlock,
+    asked: list[Asked],
+    load: str,
+    progress: Progress | None = None,
+) -> xr.Dataset:
+    """Every series under every convention at the batch's points, by every model.
+
+    Parameters
+    ----------
+    study
+        Inputs of the whole scene.
+    batch
+        Which of its geometries.
+    block
+        What relaxes, and at which times.
+    asked
+        Models.
+    load
+        Load name.
+    progress
+        Called as ``progress(geometries_done, geometries)``.
+
+    Returns
+    -------
+    xarray.Dataset
+        `VARIABLES` on ``(model, convention, series, point, ...)``.
+    """
+    whole, _ = cell_from_study(study)
+    positions = batch.points(whole)
+    cell = cell_at(whole, positions)
+    groups = [np.arange(positions.size)]
+    if any(MODELS[model.model].is_reference for model in asked):
+        groups = list(geometry_groups(cell))  # all that shares a mesh, one after the other
+    parts = []
+    for done, group in enumerate(groups, start=1):
+        parts.append(_group(cell.take(group), positions[group], block, asked, load))
+        if progress:
+            progress(done, len(groups))
+    return xr.concat(with_equal_terms(parts), "point", data_vars="minimal")
+
+
+def _group(
+    cell: Cell,
+    positions: NDArray[np.int64],
+    block: PronyBlock,
+    asked: list[Asked],
+    load: str,
+) -> xr.Dataset:
+    cases = block.cases()
+    found = [
+        [_relax(cell, block, case, convention, asked, load) for case in cases]
+        for convention in block.conventions
+    ]
+    return _dataset(found, block, cases, asked, positions, load)
+
+
+def prony_of(block: PronyBlock, case: SeriesCase) -> Prony:
+    """The series of a scene at its temperature."""
+    prony = Prony(case.weights, case.times, case.relative_to)
+    material = block.known_material(case.material) if case.material else None
+    if material is None or case.temperature in (None, material.temperature):
+        return prony
+    assert case.temperature is not None
+    return prony.shifted(shift_factor(material, case.temperature))
+
+
+def shift_factor(material: Material, temperature: float) -> float:
+    """Times at a temperature [K] over those of the material's file."""
+    assert material.temperature is not None
+    if material.wlf is not None:
+        constants = material.wlf.c_1, material.wlf.c_2
+        return float(wlf(temperature, material.temperature, *constants))
+    assert material.arrhenius is not None
+    energy = material.arrhenius.activation_energy
+    return float(arrhenius(temperature, material.temperature, energy))
+
+
+def relaxing_study(cell: Cell, case: SeriesCase) -> xr.Dataset:
+    """The points with the modulus that the material brings, if it does."""
+    values = cell.as_dict()
+    if case.young is not None:
+        values = {**values, "young_m": np.full_like(values["young_m"], case.young)}
+    return xr.Dataset({name: ("point", value) for name, value in values.items()})
+
+
+def _relax(
+    cell: Cell,
+    block: PronyBlock,
+    case: SeriesCase,
+    convention: str,
+    asked: list[Asked],
+    load: str,
+) -> dict[str, Any]:
+    """One series under one convention: variable -> values, models first."""
+    prony = prony_of(block, case)
+    points = relaxing_study(cell, case)
+    start, _ = cell_from_study(points)
+    matrix = Relaxing.of(start.ravel(), prony, convention)
+    times = np.concatenate(([0.0], block.times.values()))
+    states = matrix.states(times)
+    rows: dict[str, list[Any]] = {}
+    for model in asked:
+        series = relaxation_series(
+            points, prony, model.model, convention, load, **dict(model.options)
+        )
+        row = _row(series, times, block.dynamic_frequencies)
+        row["relaxation_status"] = _flags(model.model, series, states)
+        if block.checks:
+            row |= correspondence(row["chain"], series, matrix, model, load, block.checks)
+        for name, value in row.items():
+            rows.setdefault(name, []).append(value)
+    return {
+        **rows,
+        "shear_share": prony.relaxation_modulus(times),
+        "poisson_t": np.stack([state.poisson_m for state in states], axis=-1),
+    }
+
+
+def _row(series: xr.Dataset, times: FloatArray, frequencies: FloatArray) -> dict[str, Any]:
+    strengths, tau = (series[name].values for name in ("K_k", "tau_k"))
+    used = np.isfinite(strengths)
+    filled = np.where(used, strengths, 0.0), np.where(used, tau, 1.0)
+    chain = Chain(series["K_inf"].values, *filled)
+    dynamic = np.moveaxis(chain.dynamic(frequencies), 0, -1)
+    return {
+        "chain": chain,
+        "relaxation": np.moveaxis(chain.relaxation(times), 0, -1),
+        "storage": dynamic.real,
+        "loss": dynamic.imag,
+        "K_inf": series["K_inf"].values,
+        "K_k": strengths,
+        "tau_k": tau,
+        "series_error": series["error_estimate"].values,
+        "series_status": series["status"].values,
+        "series_terms": used.sum(axis=-1),
+        "series_seconds": series["seconds"].values,
+    }
+
+
+def _flags(model: str, series: xr.Dataset, states: list[Cell]) -> NDArray[np.int8]:
+    """Flags over time: as Poisson's ratio rises a model's valid range may end."""
+    always = series["status"].values
+    if MODELS[model].is_reference:
+        return np.repeat(always[:, None], len(states), axis=1).astype(np.int8)
+    known = np.isfinite(series["K_inf"].values)
+    inside = np.stack(
+        [np.broadcast_to(MODELS[model].is_valid(state), always.shape) for state in states], axis=1
+    )
+    own = np.where(inside, Status.ok, Status.outside_valid_range)
+    return np.where(known[:, None], own, always[:, None]).astype(np.int8)
+
+
+def _dataset(
+    found: list[list[dict[str, Any]]],
+    block: PronyBlock,
+    cases: list[SeriesCase],
+    asked: list[Asked],
+    positions: NDArray[np.int64],
+    load: str,
+) -> xr.Dataset:
+    width = max(v.shape[-1] for rows in found for row in rows for v in row["K_k"])
+    variables: dict[str, Any] = {INDEX: ("point", positions)}
+    for name, dims in VARIABLES.items():
+        if name not in found[0][0]:
+            continue
+        wide = width if name in TERM_VARIABLES else 0
+        values = np.array([[_padded(row[name], wide) for row in rows] for rows in found])
+        if "model" in dims:
+            values = np.moveaxis(values, 2, 0)
+        elif "convention" not in dims:
+            values = values[0]
+        variables[name] = (dims, values, attributes(name, load))
+    coords = {"model": [model.label for model in asked], **series_coordinates(block, cases)}
+    return xr.Dataset(variables, coords, {"load": load})
+
+
+def _padded(values: Any, width: int) -> Any:
+    """Models on one array, terms padded with NaN to a width."""
+    if not width:
+        return np.array(values)
+    return np.array(
+        [np.pad(v, ((0, 0), (0, width - v.shape[-1])), constant_values=np.nan) for v in values]
+    )
+
+
+def series_coordinates(block: PronyBlock, cases: list[SeriesCase]) -> dict[str, Any]:
+    """Coordinates of the dimensions convention, series, time and frequency."""
+    time = {"units": "s", "long_name": "time since the step"}
+    frequency = {"units": "rad s-1", "long_name": "angular frequency"}
+    temperature = [np.nan if case.temperature is None else case.temperature for case in cases]
+    of_series = {
+        "series_kind": [case.kind for case in cases],
+        "series_profile": [case.profile for case in cases],
+        "series_decades": [case.decades for case in cases],
+        "series_relaxing": [case.relaxing_share for case in cases],
+        "series_size": [len(case.times) for case in cases],
+        "temperature": temperature,
+    }
+    about = {
+        "series_kind": {"long_name": "what the series is: kind of material, inline or generated"},
+        "series_profile": {"long_name": "weights of a generated series over its times"},
+        "series_decades": {"units": "1", "long_name": "decades from smallest to largest time"},
+        "series_relaxing": {
+            "units": "1",
+            "long_name": "share of the modulus that relaxes",
+        },
+        "series_size": {"units": "1", "long_name": "terms of the matrix"},
+        "temperature": {"units": "K", "long_name": "temperature"},
+    }
+    labels = {"long_name": "Prony series of the matrix"}
+    return {
+        "convention": ("convention", list(block.conventions), {"long_name": "what relaxes"}),
+        "series": ("series", [case.name for case in cases], labels),
+        "time": ("time", np.concatenate(([0.0], block.times.values())), time),
+        "frequency": ("frequency", np.asarray(block.dynamic_frequencies), frequency),
+        **{name: ("series", values, about[name]) for name, values in of_series.items()},
+    }

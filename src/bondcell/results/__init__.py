@@ -1,0 +1,1 @@
+"""Results: what files hold, and the tables and verdicts that follow from them."""

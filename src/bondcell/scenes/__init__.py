@@ -1,0 +1,1 @@
+"""Scenes: parameter files, read safely, checked whole and made immutable."""

@@ -1,0 +1,123 @@
+"""From the validation library's error records to violations that name key, value and range."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import replace
+from difflib import get_close_matches
+from typing import Any
+
+from pydantic import ValidationError
+
+from bondcell.errors import Violation
+from bondcell.scenes.quantities import NotAllowed
+
+KeyPath = tuple[str | int, ...]
+
+LONGEST_VALUE = 80
+"""Longest value shown in full, in characters."""
+
+_PLAIN = {
+    "model_type": "a mapping of keys to values",
+    "model_attributes_type": "a mapping of keys to values",
+    "dict_type": "a mapping of keys to values",
+    "tuple_type": "a list",
+    "union_tag_not_found": "a list of values, or {start, stop, points, spacing}",
+    "missing": "a value: the key is required",
+}
+
+_TAGS = ("list", "range", "[key]")
+"""Marks that the library puts into a path besides the keys of the file."""
+
+
+def found_violations(
+    error: ValidationError, known_keys: Callable[[KeyPath], tuple[str, ...]]
+) -> Iterator[tuple[KeyPath, Violation]]:
+    """KeyPath and violation of everything the library complains about.
+
+    Parameters
+    ----------
+    error
+        The library's exception.
+    known_keys
+        KeyPath of a block -> the keys it may have.
+    """
+    for record in error.errors(include_url=False):
+        path = _plain_path(record["loc"])
+        value = None if record["type"] == "missing" else shortened(record["input"])
+        allowed = _allowed(record, path, known_keys)
+        yield path, Violation(dotted(path), value, allowed)
+
+
+def dotted(path: KeyPath) -> str:
+    """Write a path with dots; the file itself is ``scene``.
+
+    Examples
+    --------
+    >>> dotted(("sweep", "gap", 2))
+    'sweep.gap.2'
+    """
+    return ".".join(str(part) for part in path) or "scene"
+
+
+def shortened(value: Any) -> Any:
+    """Keep a value as it is, or cut its representation if that is long."""
+    text = repr(value)
+    return value if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
+
+
+def null_violations(data: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Violation]]:
+    """Keys without a value, as a half-written file has them."""
+    if not isinstance(data, Mapping):
+        return
+    for key, value in data.items():
+        here = (*path, key)
+        if value is None:
+            allowed = "a value; leave the key out for its default"
+            yield here, Violation(dotted(here), None, allowed)
+        yield from null_violations(value, here)
+
+
+def without(data: Any, paths: Collection[KeyPath], path: KeyPath = ()) -> Any:
+    """Copy of nested mappings that lacks what stands at the paths."""
+    if not isinstance(data, Mapping):
+        return data
+    return {
+        key: without(value, paths, (*path, key))
+        for key, value in data.items()
+        if (*path, key) not in paths
+    }
+
+
+def as_given(violation: Violation, data: Any) -> Violation:
+    """Show a quantity as it was written, ``0 mm`` instead of 0.0."""
+    raw = data
+    for key in violation.field.split("."):
+        raw = raw.get(key) if isinstance(raw, Mapping) else None
+    return replace(violation, value=shortened(raw)) if isinstance(raw, str) else violation
+
+
+def _plain_path(location: KeyPath) -> KeyPath:
+    tagged = location[0] == "sweep" if location else False
+    return tuple(
+        part
+        for i, part in enumerate(location)
+        if not (part == "[key]" or (tagged and i == 2 and part in _TAGS))
+    )
+
+
+def _allowed(
+    record: Mapping[str, Any], path: KeyPath, known_keys: Callable[[KeyPath], tuple[str, ...]]
+) -> str:
+    kind = record["type"]
+    context = record.get("ctx", {})
+    if isinstance(context.get("error"), NotAllowed):
+        return str(context["error"].allowed)
+    if kind == "extra_forbidden":
+        keys = known_keys(path[:-1])
+        close = get_close_matches(str(path[-1]), keys, 1)
+        hint = f"; did you mean {close[0]}?" if close else ""
+        return f"one of the keys {', '.join(keys)}{hint}"
+    if kind == "literal_error":
+        return str(context["expected"])
+    return _PLAIN.get(kind, str(record["msg"]))

@@ -1,0 +1,1 @@
+"""The paper's specimen: lattices of bonds against the three-dimensional solid."""

@@ -1,0 +1,44 @@
+"""The specimen's batches into groups of study.nc."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from bondcell import provenance
+from bondcell.jobs.batch_files import read_batch
+from bondcell.jobs.collect import machines
+from bondcell.specimen.results import combine
+
+if TYPE_CHECKING:
+    from bondcell.scenes.scene import Scene
+
+
+def collect_specimen(scene: Scene, files: list[Path]) -> tuple[xr.Dataset, dict[str, xr.Dataset]]:
+    """Root group and groups of a specimen scene's file.
+
+    Parameters
+    ----------
+    scene
+        A scene with a specimen block.
+    files
+        Its batches, ``specimen_<part>.nc`` and ``specimen_midplane.nc``.
+
+    Raises
+    ------
+    DataError
+        A file is damaged or was computed for other parameters.
+    """
+    found = {_part(path): read_batch(path, scene.specimen_digest) for path in files}
+    attributes = provenance.collect(scene) | machines(found.values())
+    plane = found.pop("midplane", None)
+    root, groups = combine(found)
+    if plane is not None:
+        groups["midplane"] = plane
+    return root.assign_attrs(attributes), groups
+
+
+def _part(path: Path) -> str:
+    return Path(path).stem.removeprefix("specimen_")

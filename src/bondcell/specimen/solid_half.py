@@ -1,0 +1,174 @@
+"""The specimen as a solid: one half by symmetry, particles rigid or elastic, meshes in a ladder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bondcell.cell import FloatArray
+from bondcell.lattice import specimen_geometry as given
+from bondcell.lattice.packing import Packing, packing
+from bondcell.solid.elastic import solve_elastic
+from bondcell.solid.rigid import condense
+from bondcell.solid.sphere_mesh import sphere_mesh
+from bondcell.solid.stiffness import Elastic
+from bondcell.solid.tets import Tets
+from bondcell.specimen.bonds import Material
+from bondcell.specimen.bound import softest
+
+X, Y, Z = range(3)
+
+EXPECTED_ORDER = 1.0
+"""Order of the energy in the element size that two meshes are taken to have; three show it.
+
+The order rises with refinement, to above 2 below half a gap; meshes of an element a gap show one.
+"""
+
+
+@dataclass(frozen=True)
+class SolidAnswer:
+    """Answers of one mesh to several load cases.
+
+    Parameters
+    ----------
+    energy
+        Energy of the whole specimen [J], shape (cases,).
+    motion
+        Displacement (x, y) [m] and rotation [rad] of all particles, shape (cases, 18, 3).
+    dof
+        Unknowns.
+    seconds
+        Wall time of assembly and solution [s].
+    field
+        Displacements of all nodes of the half [m], shape (nodes, 3, cases); elastic particles only.
+    softest
+        Smallest ``2 U / n^2`` of any displacement [N/m], see `bondcell.specimen.bound`; rigid
+        particles only.
+    """
+
+    energy: FloatArray
+    motion: FloatArray
+    dof: int
+    seconds: float
+    field: FloatArray | None = None
+    softest: float = np.nan
+
+
+def half_specimen() -> Packing:
+    """The half ``z >= 0`` of the specimen."""
+    whole = given.specimen_packing()
+    (x, y, (_, top)) = given.BOX
+    return packing(whole.centres, whole.radii, (x, y, (0.0, top)))
+
+
+def supports(mesh: Tets, walls: str) -> NDArray[np.bool_]:
+    """Displacements that are zero, shape (nodes, 3): the bottom, symmetry, sides if fixed."""
+    held = np.zeros((len(mesh.points), 3), dtype=bool)
+    held[mesh.on_plane(Y, given.BOX[Y][0])] = True
+    held[mesh.on_plane(Z, 0.0), Z] = True
+    if walls == "fixed":
+        for side in given.BOX[X]:
+            held[mesh.on_plane(X, side)] = True
+    return held
+
+
+def materials(material: Material) -> tuple[Elastic, Elastic]:
+    """Matrix and particles."""
+    return (
+        Elastic(material.young_matrix, material.poisson_matrix),
+        Elastic(material.young_particle, material.poisson_particle),
+    )
+
+
+def rigid_answer(
+    mesh: Tets, material: Material, walls: str, displacements: FloatArray
+) -> SolidAnswer:
+    """Rigid particles; ``displacements`` of particles 1 to 3, shape (cases, 2) [m]."""
+    started = perf_counter()
+    found = condense(mesh, half_specimen(), materials(material)[0], supports(mesh, walls))
+    motion = np.zeros((len(displacements), 18, 3))
+    energy = np.zeros(len(displacements))
+    for case, displacement in enumerate(displacements):
+        moved, _, half = found.solve(np.array(given.LOADED), displacement)
+        motion[case, found.moving], energy[case] = moved, 2 * half
+    seconds = perf_counter() - started
+    shifts = np.tile([True, True, False], found.moving.size)
+    least = softest(2 * found.stiffness, shifts)
+    return SolidAnswer(energy, motion, found.dof, seconds, softest=least)
+
+
+def elastic_answer(
+    mesh: Tets, material: Material, walls: str, displacements: FloatArray
+) -> SolidAnswer:
+    """Elastic particles; mean ``displacements`` of particles 1 to 3, shape (cases, 2) [m]."""
+    started = perf_counter()
+    found = solve_elastic(
+        mesh,
+        half_specimen(),
+        *materials(material),
+        supports(mesh, walls),
+        np.array(given.LOADED),
+        displacements,
+    )
+    motion = found.motion.transpose(2, 0, 1)
+    seconds = perf_counter() - started
+    return SolidAnswer(2 * found.energy, motion, found.dof, seconds, field=found.field)
+
+
+def specimen_mesh(per_gap: float) -> Tets:
+    """Mesh of the half specimen with elements of ``per_gap`` times the local gap."""
+    return sphere_mesh(half_specimen(), per_gap)
+
+
+def extrapolate(sizes: Sequence[float], values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Limit of a ladder of values that fall with the element size, and the finest one's error.
+
+    Parameters
+    ----------
+    sizes
+        Element sizes, falling.
+    values
+        Shape (sizes, ...).
+
+    Returns
+    -------
+    tuple
+        The limit and the estimated relative error of the finest value; NaN with one size only.
+
+    Notes
+    -----
+    ``v(h) = v_0 + c h^p``; three sizes give p, which is kept between 1 and 4, two are taken to have
+    `EXPECTED_ORDER`. The estimate is the distance to the limit for an order that is lower by one
+    half, so that it errs on the safe side.
+
+    Examples
+    --------
+    >>> limit, error = extrapolate([1, 0.5, 0.25], np.array([2.0, 1.25, 1.0625]))
+    >>> round(float(limit), 6)
+    1.0
+    """
+    if len(sizes) < 2:
+        return values[-1], np.full_like(values[-1], np.nan)
+    order = np.full_like(values[-1], EXPECTED_ORDER)
+    if len(sizes) > 2:
+        order = _order(sizes[-3:], values[-3:])
+    drop, ratio = values[-2] - values[-1], sizes[-2] / sizes[-1]
+    limit = values[-1] - drop / (ratio**order - 1)
+    careful = np.abs(drop / (ratio ** np.maximum(order - 0.5, 0.5) - 1))
+    return limit, np.asarray(careful / np.abs(limit))
+
+
+def _order(sizes: Sequence[float], values: FloatArray) -> FloatArray:
+    """Order p of three values by bisection of ``(h1^p - h2^p) / (h2^p - h3^p) = d12 / d23``."""
+    wanted = (values[0] - values[1]) / np.where(values[1] != values[2], values[1] - values[2], 1.0)
+    low, high = np.full_like(wanted, 1.0), np.full_like(wanted, 4.0)
+    for _ in range(50):
+        middle = (low + high) / 2
+        a, b, c = (size**middle for size in sizes)
+        larger = (a - b) / (b - c) < wanted
+        low, high = np.where(larger, middle, low), np.where(larger, high, middle)
+    return (low + high) / 2

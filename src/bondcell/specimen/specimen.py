@@ -1,0 +1,251 @@
+"""The paper's specimen: lattices of bonds against the three-dimensional solid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import pairwise
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from bondcell.cell import FloatArray
+from bondcell.errors import InputError, Violation
+from bondcell.lattice import specimen_geometry as given
+from bondcell.models import MODELS
+from bondcell.specimen.bonds import Material
+from bondcell.specimen.lattice_variants import VARIANTS, specimen_lattice
+from bondcell.specimen.names import LOADINGS, METHODS, SOLIDS, WALLS
+from bondcell.status import Status, cf_flag_attributes
+
+Watch = Callable[[str, str, Any, Any], None]
+
+MODES = ("normal", "shear", "bending", "torsion", "pocket", "ground")
+"""Parts of a lattice's energy."""
+
+POCKET_SIZES = (0.5, 0.33)
+"""Element sizes, relative to the gap, of the cell that gives the pockets."""
+
+_DIMS = ("method", "loading", "walls")
+_CHOICES = {"methods": METHODS, "loadings": tuple(LOADINGS), "walls": WALLS}
+_ATTRIBUTES = {
+    "energy": {"units": "J", "long_name": "strain energy"},
+    "displacement": {"units": "m", "long_name": "displacement of the particle's centre"},
+    "rotation": {"units": "rad", "long_name": "rotation of the particle"},
+    "displacement_norm": {
+        "units": "m",
+        "long_name": "root of the sum of squared displacements of all particles",
+    },
+    "mode_energy": {"units": "J", "long_name": "strain energy by mode of deformation"},
+    "error_estimate": {"units": "1", "long_name": "relative numerical error of the energy"},
+    "status": cf_flag_attributes(),
+    "dof": {"units": "1", "long_name": "degrees of freedom"},
+    "seconds": {"units": "s", "long_name": "wall time of all loadings together, mesh excluded"},
+    "level_energy": {"units": "J", "long_name": "strain energy on each mesh of the ladder"},
+    "level_dof": {"units": "1", "long_name": "degrees of freedom of each mesh"},
+    "level_seconds": {"units": "s", "long_name": "wall time on each mesh, mesh excluded"},
+    "limit_energy": {"units": "J", "long_name": "strain energy extrapolated over the meshes"},
+}
+
+
+def specimen(
+    methods: Sequence[str] = METHODS,
+    loadings: Sequence[str] = tuple(LOADINGS),
+    walls: Sequence[str] = WALLS,
+    per_gap: Sequence[float] = (1.0, 0.5),
+    material: Material | None = None,
+    watch: Watch | None = None,
+) -> xr.Dataset:
+    """Displace particles 1 to 3 of the specimen by 0.5 mm, in every asked way.
+
+    Parameters
+    ----------
+    methods, loadings, walls
+        Names in `METHODS`, `LOADINGS` and `WALLS`.
+    per_gap
+        Element sizes of the solid relative to the gap, falling: the ladder of its meshes.
+    material
+        Elastic constants; default: the paper's.
+    watch
+        Called as ``watch(method, walls, mesh, answer)`` with each answer of the solid, and as
+        ``watch(method, walls, lattice, solutions)`` with a lattice's solutions of all loadings.
+
+    Returns
+    -------
+    xarray.Dataset
+        On ``method``, ``loading``, ``walls``: ``energy``, ``displacement_norm``, ``error_estimate``
+        (relative numerical error of the energy), ``status``, ``dof``, ``seconds``; with
+        ``particle`` (1 to 18) ``rotation``, with ``component`` as well ``displacement``; with
+        ``mode`` ``mode_energy`` of the lattices. Of the solids also ``level_energy``,
+        ``level_dof``, ``level_seconds`` on ``per_gap`` and ``limit_energy``. What was not computed
+        is NaN and flagged.
+
+    Raises
+    ------
+    InputError
+        A name is unknown or a size out of range.
+
+    Examples
+    --------
+    >>> out = specimen(methods=["lattice_paper"], walls=["free"])
+    >>> out.energy.squeeze().round(5).values
+    array([0.01449, 0.03154])
+    """
+    material = material or Material()
+    _check({"methods": methods, "loadings": loadings, "walls": walls}, per_gap)
+    data = _empty(methods, loadings, walls, per_gap)
+    ways = given.DISPLACEMENT * np.array([LOADINGS[name] for name in loadings])
+    solids = [name for name in methods if name in SOLIDS]
+    if solids:
+        _add_solids(data, solids, ways, material, watch)
+    started = perf_counter()
+    triangles = _triangle_ladder(material) if "lattice_full" in methods else []
+    cell_seconds = perf_counter() - started
+    for method in methods:
+        if method in VARIANTS and VARIANTS[method][0] in (*MODELS, "paper"):
+            for wall in walls:
+                _add_lattice(data, method, wall, ways, material, triangles, watch)
+    if triangles:
+        # Its pockets come from a cell of their own, solved once for all walls.
+        data.seconds.loc[{"method": "lattice_full"}] += cell_seconds
+    data["displacement_norm"] = np.sqrt(
+        (data.displacement**2).sum(("particle", "component"), skipna=False)
+    )
+    for name, attributes in _ATTRIBUTES.items():
+        if name in data:
+            data[name].attrs.update(attributes)
+    data.attrs["title"] = "Lattices of bonds against the three-dimensional solid"
+    return data
+
+
+def _check(chosen: dict[str, Sequence[str]], per_gap: Sequence[float]) -> None:
+    violations = [
+        Violation(field, name, f"one of {', '.join(_CHOICES[field])}")
+        for field, names in chosen.items()
+        for name in names
+        if name not in _CHOICES[field]
+    ]
+    if not len(per_gap) or not all(0 < size <= 2 for size in per_gap):
+        violations.append(Violation("per_gap", list(per_gap), "at least one size in (0, 2]"))
+    elif any(later >= size for size, later in pairwise(per_gap)):
+        violations.append(Violation("per_gap", list(per_gap), "falling sizes"))
+    if violations:
+        raise InputError(violations)
+
+
+def _empty(
+    methods: Sequence[str], loadings: Sequence[str], walls: Sequence[str], per_gap: Sequence[float]
+) -> xr.Dataset:
+    """The data with nothing computed yet."""
+    coords: dict[str, Any] = {
+        "method": list(methods),
+        "loading": list(loadings),
+        "walls": list(walls),
+        "particle": np.arange(1, 19),
+        "component": ["x", "y"],
+        "mode": list(MODES),
+        "per_gap": ("per_gap", list(per_gap), {"units": "1", "long_name": "element size per gap"}),
+    }
+    sizes = {name: len(v[1]) if isinstance(v, tuple) else len(v) for name, v in coords.items()}
+    more = {
+        "energy": (), "error_estimate": (), "seconds": (), "limit_energy": (),
+        "rotation": ("particle",), "displacement": ("particle", "component"),
+        "mode_energy": ("mode",), "level_energy": ("per_gap",), "level_seconds": ("per_gap",),
+        "level_dof": ("per_gap",),
+    }  # fmt: skip
+    data = xr.Dataset(coords=coords)
+    for name, dims in more.items():
+        shape = tuple(sizes[dim] for dim in (*_DIMS, *dims))
+        data[name] = ((*_DIMS, *dims), np.full(shape, np.nan))
+    shape = tuple(sizes[dim] for dim in _DIMS)
+    data["status"] = (_DIMS, np.full(shape, Status.not_computed, dtype=np.int8))
+    data["dof"] = (_DIMS, np.zeros(shape, dtype=np.int64))
+    return data
+
+
+def _add_solids(
+    data: xr.Dataset,
+    solids: Sequence[str],
+    ways: FloatArray,
+    material: Material,
+    watch: Watch | None,
+) -> None:
+    from bondcell.specimen.solid_half import (
+        elastic_answer,
+        extrapolate,
+        rigid_answer,
+        specimen_mesh,
+    )
+
+    solve = {"fe_rigid": rigid_answer, "fe_elastic": elastic_answer}
+    for size in data.per_gap.values.tolist():
+        mesh = specimen_mesh(size)
+        for method in solids:
+            for wall in data.walls.values.tolist():
+                answer = solve[method](mesh, material, wall, ways)
+                if watch:
+                    watch(method, wall, mesh, answer)
+                at = {"method": method, "walls": wall}
+                data.level_energy.loc[{**at, "per_gap": size}] = answer.energy
+                data.level_dof.loc[{**at, "per_gap": size}] = answer.dof
+                data.level_seconds.loc[{**at, "per_gap": size}] = answer.seconds
+                data.energy.loc[at] = answer.energy
+                data.displacement.loc[at] = answer.motion[..., :2]
+                data.rotation.loc[at] = answer.motion[..., 2]
+                data.dof.loc[at], data.seconds.loc[at] = answer.dof, answer.seconds
+                data.status.loc[at] = Status.ok
+    for method in solids:
+        levels = data.level_energy.sel({"method": method}).transpose("per_gap", "loading", "walls")
+        limit, error = extrapolate(data.per_gap.values.tolist(), levels.values)
+        data.limit_energy.loc[{"method": method}] = limit
+        data.error_estimate.loc[{"method": method}] = error
+
+
+def _triangle_ladder(material: Material) -> list[tuple[float, float]]:
+    """Energies of a triangle of neighbours on two meshes, the finer one first."""
+    from bondcell.solid.pocket import triangle_energies
+    from bondcell.solid.stiffness import Elastic
+
+    matrix = Elastic(material.young_matrix, material.poisson_matrix)
+    depth = given.BOX[2][1] - given.BOX[2][0]
+    found = [
+        triangle_energies(given.RADIUS, given.GAP, depth, matrix, size)
+        for size in reversed(POCKET_SIZES)
+    ]
+    return [(one.dilation, one.deviator) for one in found]
+
+
+def _add_lattice(
+    data: xr.Dataset,
+    method: str,
+    wall: str,
+    ways: FloatArray,
+    material: Material,
+    triangles: list[tuple[float, float]],
+    watch: Watch | None,
+) -> None:
+    """One lattice under all loadings."""
+    started = perf_counter()
+    every = [
+        specimen_lattice(method, material, wall, triangle)
+        for triangle in (triangles if method == "lattice_full" else [None])
+    ]
+    answers = [[own.solve(way) for way in ways] for own in every]
+    seconds = perf_counter() - started
+    if watch:
+        watch(method, wall, every[0], answers[0])
+    for loading, found in zip(data.loading.values.tolist(), answers[0], strict=True):
+        at = {"method": method, "walls": wall, "loading": loading}
+        data.energy.loc[at] = found.energy
+        data.displacement.loc[at] = found.motion[:18, :2]
+        if every[0].lattice.rotates:
+            data.rotation.loc[at] = found.motion[:18, 2]
+        for mode, energy in found.energies.items():
+            data.mode_energy.loc[{**at, "mode": mode}] = energy
+        data.dof.loc[at], data.seconds.loc[at] = found.dof, seconds
+        data.status.loc[at] = Status.ok
+        data.error_estimate.loc[at] = 1e-12 if VARIANTS[method][0] != "fe" else 1e-6
+    if len(answers) > 1:
+        fine, coarse = (np.array([found.energy for found in own]) for own in answers)
+        data.error_estimate.loc[{"method": method, "walls": wall}] = abs(coarse / fine - 1)
