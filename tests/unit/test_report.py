@@ -7,6 +7,7 @@ from itertools import pairwise
 import pandas as pd
 import pytest
 
+from bondcell.errors import DataError
 from bondcell.figures import draw_scene
 from bondcell.report import headlines, with_subscripts, write_report
 from bondcell.report.convergence_part import convergence_findings
@@ -56,12 +57,16 @@ def results(synthetic, tmp_path_factory):
     folder = tmp_path_factory.mktemp("results")
     origin = {"machine": "a test", "versions": '{"numpy": "2"}', "source_revision": "abc123"}
     figure4 = synthetic.figure4.assign_attrs(origin)
-    write_dataset(figure4, folder / "figure4" / "study.nc")
+    write_dataset(
+        figure4.assign_attrs(parameters=SCENES[0].given_json), folder / "figure4" / "study.nc"
+    )
     accuracy_table(figure4).to_csv(folder / "figure4" / "accuracy.csv", index=False)
-    point = synthetic.point.sel(model=["fsi"]).assign_attrs(origin)
+    point = synthetic.point.sel(model=["fsi"]).assign_attrs(
+        origin | {"parameters": SCENES[1].given_json}
+    )
     write_dataset(point, folder / "ladders" / "study.nc", {"convergence": synthetic.convergence})
     draw_scene(SCENES[0], figure4, None, folder / "figure4" / "figures")
-    write_report(folder, SCENES, folder / "report.html")
+    write_report(folder, folder / "report.html", SCENES)
     return folder
 
 
@@ -139,6 +144,22 @@ def test_links_lead_to_files(results, outline):
     files = [link["href"] for link in outline.all("a") if not link["href"].startswith("#")]
     assert {"figure4/study.nc", "figure4/accuracy.csv", "ladders/study.nc"} <= set(files)
     assert all((results / name).is_file() for name in files)
+
+
+def test_a_folder_of_results_is_enough(results, tmp_path):
+    written = write_report(results, tmp_path / "elsewhere" / "page.html")
+    assert written.scenes == ["figure4", "ladders"]
+    page = written.path.read_text(encoding="utf-8")
+    links = [link["href"] for link in Outline(page).all("a") if not link["href"].startswith("#")]
+    assert links
+    assert all((written.path.parent / link).is_file() for link in links)
+    assert text_of(page).count(written.sentences[0].split(",")[0]) >= 1
+
+
+def test_a_folder_without_results(tmp_path):
+    with pytest.raises(DataError, match="a folder of results"):
+        write_report(tmp_path, tmp_path / "page.html")
+    assert not list(tmp_path.iterdir())
 
 
 def test_content(page):

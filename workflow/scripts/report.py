@@ -7,7 +7,6 @@ from bondcell.report import write_report
 from bondcell.results.kept import was_computed
 from bondcell.scenes.planned_scene import planned_scene
 from bondcell.scenes.scene import load_scene
-from bondcell.storage import replacing
 
 with job("report") as log:
     digests = snakemake.params.digests.values()
@@ -19,6 +18,5 @@ with job("report") as log:
             scenes.append(kept)
         else:
             log.say(f"{name} was edited since its results were computed: left out")
-    with replacing(snakemake.output[0]) as path:
-        write_report(Path(snakemake.output[0]).parent, scenes, path)
-    log.result = f"{len(scenes)} scenes"
+    page = Path(snakemake.output[0])
+    log.result = f"{len(write_report(page.parent, page, scenes).scenes)} scenes"

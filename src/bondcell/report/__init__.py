@@ -3,18 +3,23 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup, escape
 
 from bondcell.models import MODELS
 from bondcell.report.findings import Finding
+from bondcell.report.found_scenes import found_scenes
 from bondcell.report.sections import Section, build_section
+from bondcell.storage import replacing
 from bondcell.wording import SYMBOLS, listed, model_name
 
 if TYPE_CHECKING:
@@ -22,6 +27,9 @@ if TYPE_CHECKING:
 
 HEADLINES = 6
 """Most findings on the first screen."""
+
+SENTENCES = 3
+"""Most of them in words."""
 
 _SYMBOL = re.compile(
     r"(?<![\w/])([A-Za-zν])_(int|FE|[a-z]{1,2})(?![\w])|(?<=/)([A-Za-z])_([a-z])\b"
@@ -34,34 +42,69 @@ _TIED = re.compile(r" (?=[%=≥])|(?<=[=≥]) ")
 """Blanks at which a line does not break: before a per cent sign, around an equals sign."""
 
 
-def write_report(results: Path, scenes: Iterable[Scene], path: Path) -> None:
-    """Write the page.
+@dataclass(frozen=True)
+class Written:
+    """What was put on the page.
+
+    Parameters
+    ----------
+    path
+        The page.
+    scenes
+        Names of the scenes that have a section.
+    sentences
+        The main findings, plain text.
+    """
+
+    path: Path
+    scenes: list[str]
+    sentences: list[str]
+
+
+def write_report(results: Path, path: Path, scenes: Iterable[Scene] | None = None) -> Written:
+    """Write the page; it appears under its name when it is complete.
 
     Parameters
     ----------
     results
-        The folder with a folder for each scene; links on the page are relative to it.
-    scenes
-        The study's scenes in order; one without results is named as missing.
+        The folder with a folder for each scene.
     path
-        The page.
+        The page; its links to the results are relative.
+    scenes
+        The study's scenes in order, one without results is named as missing; None: all that the
+        folder holds.
+
+    Raises
+    ------
+    DataError
+        A file of results is missing, damaged or of another make.
     """
-    wanted = list(scenes)
+    wanted = found_scenes(results) if scenes is None else list(scenes)
     sections = [section for scene in wanted if (section := build_section(scene, results))]
-    done = {section.name for section in sections}
+    done = [section.name for section in sections]
+    shown = headlines(sections)
     page = (
         _environment()
         .get_template("report.html.j2")
         .render(
             sections=sections,
+            beside=_address(results, path.parent),
             missing=[scene.name for scene in wanted if scene.name not in done],
-            headlines=headlines(sections),
+            headlines=shown,
             models=_models(sections),
             provenance=_provenance(sections),
             written=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         )
     )
-    path.write_text(page, encoding="utf-8")
+    with replacing(path) as temporary:
+        temporary.write_text(page, encoding="utf-8")
+    return Written(path, done, [finding.text for _, finding in shown[:SENTENCES]])
+
+
+def _address(folder: Path, page_folder: Path) -> str:
+    """Relative address of a folder from the page, empty or with a slash at its end."""
+    relative = Path(os.path.relpath(folder, page_folder)).as_posix()
+    return "" if relative == "." else f"{quote(relative)}/"
 
 
 def headlines(sections: Iterable[Section]) -> list[tuple[Section, Finding]]:

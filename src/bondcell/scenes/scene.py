@@ -328,6 +328,39 @@ def parse_scene(
     return scene
 
 
+def recorded_scene(given_json: str, name: str) -> Scene:
+    """A scene as the file of its results remembers it.
+
+    Parameters
+    ----------
+    given_json
+        The file's attribute ``parameters``.
+    name
+        The scene's name.
+
+    Raises
+    ------
+    SceneError
+        The text is no scene of this version.
+
+    Notes
+    -----
+    What concerns the scene's surroundings (its materials, its folder) was checked when the results
+    were computed, and is not checked again.
+    """
+    try:
+        scene = Scene.model_validate(json.loads(given_json))
+    except ValidationError as error:
+        violations = [violation for _, violation in found_violations(error, known_keys)]
+        raise SceneError(violations, source=name) from error
+    except ValueError as error:
+        wrong = Violation("parameters", given_json[:40], "JSON text as bondcell writes it")
+        raise SceneError([wrong], source=name) from error
+    scene._name = name
+    scene._given = given_json
+    return scene
+
+
 def known_keys(path: KeyPath) -> tuple[str, ...]:
     """Keys that the block at a path may have."""
     block = block_of(path) or Scene
