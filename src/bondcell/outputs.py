@@ -20,6 +20,12 @@ DETAILS = {"order": 0, "way": 3, "reduction_error": 0.0, "coupling": np.nan}
 WAYS = ("direct", "reduced_basis", "spectrum", "closed_form")
 """Meanings of the flag variable ``way``: how a value was found."""
 
+TIME = {"units": "s", "long_name": "time since the step"}
+"""Attributes of the axis ``time``."""
+
+FREQUENCY = {"units": "rad s-1", "long_name": "angular frequency"}
+"""Attributes of the axis ``frequency``."""
+
 STIFFNESS_UNITS = {
     "normal": "N m-1",
     "shear": "N m-1",

@@ -12,14 +12,11 @@ from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.evaluate import checked_model
 from bondcell.inputs import cell_from_study
-from bondcell.outputs import STIFFNESS_UNITS
+from bondcell.outputs import FREQUENCY, STIFFNESS_UNITS, TIME
 from bondcell.prony.conventions import Relaxing, absolute_moduli
 from bondcell.prony.prony import Prony
 from bondcell.relaxation_points import Answer, Question, flags, flags_for_all_times, solve, states
 from bondcell.status import cf_flag_attributes
-
-TIME = {"units": "s", "long_name": "time since the step"}
-FREQUENCY = {"units": "rad s-1", "long_name": "angular frequency"}
 
 
 def relaxation(

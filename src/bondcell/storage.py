@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from bondcell.errors import CannotWrite, DataError, Violation
@@ -32,7 +33,7 @@ def write_dataset(
     Parameters
     ----------
     dataset
-        The root group; gets the CF ``Conventions`` attribute.
+        The root group; gets the CF attributes ``Conventions`` and ``history``.
     path
         The file; its folder is made if need be, an existing file is replaced.
     groups
@@ -60,7 +61,7 @@ def write_dataset(
     """
     target = Path(path)
     with replacing(target) as temporary:
-        root = dataset.assign_attrs({"Conventions": CONVENTIONS, **dataset.attrs})
+        root = dataset.assign_attrs({**_root_attributes(dataset), **dataset.attrs})
         _write_group(root, temporary, None)
         for name, group in (groups or {}).items():
             _write_group(group, temporary, name)
@@ -89,7 +90,7 @@ def read_dataset(path: str | Path, group: str | None = None) -> xr.Dataset:
         raise DataError([Violation("file", str(source), "an existing file")], str(source))
     try:
         with xr.open_dataset(source, engine="netcdf4", group=group) as dataset:
-            return dataset.load()
+            return _with_plain_text(dataset.load())
     except (OSError, RuntimeError, ValueError, KeyError, AttributeError, IndexError) as error:
         missing_group = isinstance(error, OSError) and "group not found" in str(error)
         field = "group" if missing_group else "file"
@@ -179,8 +180,17 @@ def _write_group(dataset: xr.Dataset, path: Path, group: str | None) -> None:
         raise CannotWrite(_refusal(path, error)) from error
 
 
+def _root_attributes(dataset: xr.Dataset) -> dict[str, str]:
+    """What CF wants of a file; no time of day, so that the same content is the same file."""
+    source = dataset.attrs.get("source", "bondcell")
+    revision = dataset.attrs.get("source_revision")
+    written = f"written by {source}" + (f", revision {revision}" if revision else "")
+    return {"Conventions": CONVENTIONS, "history": written}
+
+
 def _to_netcdf(dataset: xr.Dataset, path: Path, group: str | None) -> None:
-    dataset.to_netcdf(
+    # What the dataset's variables remember of files they were read from does not count.
+    dataset.drop_encoding().to_netcdf(
         path,
         mode="a" if group else "w",
         format="NETCDF4",
@@ -191,13 +201,38 @@ def _to_netcdf(dataset: xr.Dataset, path: Path, group: str | None) -> None:
 
 
 def _encoding(dataset: xr.Dataset, name: str) -> dict[str, Any]:
-    """Compression and checksums; NaN marks a missing value, but never in a coordinate."""
+    """Types every reader knows, compression and checksums.
+
+    Text is stored as characters, since a coordinate of variable-length strings is refused by old
+    readers and by CF; whole numbers in 32 bits where they fit. NaN marks a missing value, but
+    never in a coordinate.
+    """
     variable = dataset.variables[name]
+    if variable.dtype.kind in "OU":
+        return {"dtype": "S1"}
     encoding: dict[str, Any] = {}
     if variable.dtype.kind not in "iuf":
         return encoding
     if variable.dtype.kind != "f" or name in dataset.coords:
         encoding["_FillValue"] = None
+    if variable.dtype.kind in "iu" and variable.dtype.itemsize > 4 and _fits(variable.values):
+        encoding["dtype"] = "int32"
     if variable.ndim:
         encoding |= {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
     return encoding
+
+
+def _fits(values: np.ndarray) -> bool:
+    """Whether whole numbers can be stored in 32 bits."""
+    bounds = np.iinfo(np.int32)
+    return not values.size or bool(bounds.min <= values.min() and values.max() <= bounds.max)
+
+
+def _with_plain_text(dataset: xr.Dataset) -> xr.Dataset:
+    """Text as numpy's own type, as it was before it was written as characters."""
+    text = [
+        name
+        for name, variable in dataset.variables.items()
+        if variable.dtype == object and "char_dim_name" in variable.encoding
+    ]
+    return dataset.assign({name: dataset[name].astype(str) for name in text})

@@ -16,6 +16,7 @@ from bondcell.jobs.batch_files import read_batch
 from bondcell.jobs.collect_relaxation import collect_relaxation
 from bondcell.jobs.merge import merge
 from bondcell.outputs import DETAILS
+from bondcell.results.finite_axes import with_finite_axes
 from bondcell.results.names import models_with, reference_variants, result_names
 from bondcell.status import Status
 
@@ -69,7 +70,7 @@ def collect(
     result = _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
     if relaxation:
         result = result.merge(collect_relaxation(scene, study, relaxation, load))
-    return result
+    return with_finite_axes(result)
 
 
 def collect_other_loads(

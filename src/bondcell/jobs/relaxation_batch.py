@@ -16,6 +16,7 @@ from bondcell.correspondence import correspondence
 from bondcell.inputs import cell_from_study
 from bondcell.jobs.batch import Batch, cell_at
 from bondcell.models import MODELS
+from bondcell.outputs import FREQUENCY, TIME
 from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
@@ -253,8 +254,6 @@ def _padded(values: Any, width: int) -> Any:
 
 def series_coordinates(block: PronyBlock, cases: list[SeriesCase]) -> dict[str, Any]:
     """Coordinates of the dimensions convention, series, time and frequency."""
-    time = {"units": "s", "long_name": "time since the step"}
-    frequency = {"units": "rad s-1", "long_name": "angular frequency"}
     temperature = [np.nan if case.temperature is None else case.temperature for case in cases]
     of_series = {
         "series_kind": [case.kind for case in cases],
@@ -279,7 +278,7 @@ def series_coordinates(block: PronyBlock, cases: list[SeriesCase]) -> dict[str, 
     return {
         "convention": ("convention", list(block.conventions), {"long_name": "what relaxes"}),
         "series": ("series", [case.name for case in cases], labels),
-        "time": ("time", np.concatenate(([0.0], block.times.values())), time),
-        "frequency": ("frequency", np.asarray(block.dynamic_frequencies), frequency),
+        "time": ("time", np.concatenate(([0.0], block.times.values())), TIME),
+        "frequency": ("frequency", np.asarray(block.dynamic_frequencies), FREQUENCY),
         **{name: ("series", values, about[name]) for name, values in of_series.items()},
     }

@@ -20,7 +20,7 @@ from bondcell.fem.relaxation_pencil import forget, relax
 from bondcell.fem.time_stepping import graded_times, step_through
 from bondcell.inputs import cell_from_study
 from bondcell.jobs.relaxation_batch import prony_of, relaxing_study
-from bondcell.outputs import STIFFNESS_UNITS
+from bondcell.outputs import STIFFNESS_UNITS, TIME
 from bondcell.prony.conventions import Relaxing
 from bondcell.results.names import reference_variants
 from bondcell.status import Status, cf_flag_attributes
@@ -194,7 +194,7 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
     coords = {
         "method": ("method", list(METHODS), {"long_name": "way to K(t)"}),
         "level": ("level", np.arange(levels), {"long_name": "refinement, from coarse to fine"}),
-        "compared_time": ("compared_time", problem.times, _TIME),
+        "compared_time": ("compared_time", problem.times, TIME),
     }
     return xr.Dataset(variables, coords)
 
@@ -211,8 +211,6 @@ def _timed(run: _Run, repeats: int) -> tuple[FloatArray, int, float]:
         seconds.append(clock.perf_counter() - started)
     return values, dof, median(seconds)
 
-
-_TIME = {"units": "s", "long_name": "time since the step"}
 
 _ATTRIBUTES = {
     "refinement": {"units": "1", "long_name": "tolerance, steps a decade, or nodes"},

@@ -10,6 +10,7 @@ import xarray as xr
 from bondcell import provenance
 from bondcell.jobs.batch_files import read_batch
 from bondcell.jobs.collect import machines
+from bondcell.specimen.names import AXES
 from bondcell.specimen.results import combine
 
 if TYPE_CHECKING:
@@ -37,7 +38,14 @@ def collect_specimen(scene: Scene, files: list[Path]) -> tuple[xr.Dataset, dict[
     root, groups = combine(found)
     if plane is not None:
         groups["midplane"] = plane
-    return root.assign_attrs(attributes), groups
+    described = {name: _described(group) for name, group in groups.items()}
+    return _described(root).assign_attrs(attributes), described
+
+
+def _described(data: xr.Dataset) -> xr.Dataset:
+    """The data with attributes on every axis, which reindexing loses."""
+    known = [name for name in data.coords if name in AXES]
+    return data.assign_coords({name: data[name].assign_attrs(AXES[str(name)]) for name in known})
 
 
 def _part(path: Path) -> str:

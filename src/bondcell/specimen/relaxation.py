@@ -11,6 +11,7 @@ import xarray as xr
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.lattice import specimen_geometry as given
+from bondcell.outputs import TIME
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
 from bondcell.prony.sampled_bank import sampled_bank
@@ -87,7 +88,7 @@ def specimen_relaxation(
     coords = {
         "method": list(methods),
         "loading": list(LOADINGS),
-        "time": ("time", np.asarray(time, dtype=float), {"units": "s", "long_name": "time"}),
+        "time": ("time", np.asarray(time, dtype=float), TIME),
     }
     about = {"units": "N", "long_name": "force on the displaced particles"}
     energy = {"units": "J", "long_name": "half of force times displacement"}
