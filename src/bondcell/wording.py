@@ -80,6 +80,18 @@ _PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"
 _PREFIXED = {"m": "m", "Pa": "Pa", "s": "s", "N m-1": "N/m", "N m rad-1": "N m/rad"}
 
 
+class Printed(str):
+    """A number as it is printed, that still knows its value: tables can be sorted by it."""
+
+    value: float
+
+    def __new__(cls, text: str, value: float) -> Printed:
+        """A text with its value, in SI units or as a fraction of one."""
+        made = super().__new__(cls, text)
+        made.value = value
+        return made
+
+
 def model_name(model: str) -> str:
     """Model name for tables and legends.
 
@@ -164,7 +176,10 @@ def number(value: Any, digits: int = 4) -> str:
     """
     if isinstance(value, str):
         return value
-    value = float(value)
+    return Printed(_number(float(value), digits), float(value))
+
+
+def _number(value: float, digits: int) -> str:
     if math.isnan(value):
         return "–"
     if math.isinf(value):
@@ -189,9 +204,14 @@ def quantity(value: Any, unit: str, digits: int = 4) -> str:
     >>> quantity(0.46, "1"), quantity(float("inf"), "Pa"), quantity(7.5e-3, "m")
     ('0.46', 'rigid', '7.5 mm')
     """
+    if isinstance(value, str):
+        return f"{value} {unit_text(unit)}".strip()
+    return Printed(_quantity(float(value), unit, digits), float(value))
+
+
+def _quantity(value: float, unit: str, digits: int) -> str:
     if unit not in _PREFIXED:
         return f"{number(value, digits)} {unit_text(unit)}".strip()
-    value = float(value)
     if unit == "Pa" and math.isinf(value):
         return "rigid"
     if not math.isfinite(value) or value == 0:
@@ -214,10 +234,10 @@ def percent(value: Any, digits: int = 2, *, sign: bool = False) -> str:
     """
     value = float(value)
     if math.isnan(value):
-        return "–"
+        return Printed("–", value)
     text = number(abs(value) * 100, digits)
     mark = "−" if value < 0 else "+" if sign and value > 0 else ""
-    return f"{mark}{text} %"
+    return Printed(f"{mark}{text} %", value)
 
 
 def at(axis: str, value: Any, unit: str = "1") -> str:

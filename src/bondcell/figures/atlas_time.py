@@ -15,12 +15,6 @@ from bondcell.wording import listed, model_name, percent, quantity
 LEAST, MOST = 1e-9, 30.0
 """Errors that are drawn."""
 
-STYLES: dict[str, dict[str, Any]] = {
-    "surrogate": {"color": "#3b7d4f", "marker": "*", "markersize": 10},
-    "bounds": {"color": "#4d4d4d", "marker": "d"},
-}
-"""Markers of the models that no other figure has."""
-
 
 def draw_error_against_time(table: pd.DataFrame) -> Drawing:
     """A panel for each load.
@@ -57,7 +51,7 @@ def draw_error_against_time(table: pd.DataFrame) -> Drawing:
 
 
 def _draw(axes: Axes, row: pd.Series, position: int) -> Any:
-    style = marker_style(row["model"], position) | STYLES.get(row["model"], {})
+    style = marker_style(row["model"], position)
     median, inside, worst = (
         float(np.clip(row[name], LEAST, MOST)) if np.isfinite(row[name]) else np.nan
         for name in ("abs_error_median", "abs_error_max_inside", "abs_error_max")

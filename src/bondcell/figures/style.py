@@ -29,6 +29,8 @@ LINES: dict[str, dict[str, Any]] = {
     },
     "cementation": {"color": "#7a5195", "linestyle": (0, (1, 1.2)), "marker": "P"},
     "film": {"color": "#882255", "linestyle": (0, (8, 2)), "marker": "X"},
+    "bounds": {"color": "#4d4d4d", "linestyle": (0, (2, 1)), "marker": "d"},
+    "surrogate": {"color": "#3b7d4f", "linestyle": (0, (6, 1, 1, 1)), "marker": "*"},
 }
 """Colour (Okabe and Ito's set), line and marker of each analytic model: never colour alone."""
 

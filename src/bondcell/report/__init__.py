@@ -13,33 +13,19 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
-from markupsafe import Markup, escape
 
 from bondcell.models import MODELS
-from bondcell.report.findings import Finding
 from bondcell.report.found_scenes import found_scenes
+from bondcell.report.front import front
+from bondcell.report.interactive.library import drawing_library
+from bondcell.report.scene_cost import cost_lines
 from bondcell.report.sections import Section, build_section
+from bondcell.report.symbols import with_subscripts
 from bondcell.storage import replacing
 from bondcell.wording import SYMBOLS, listed, model_name
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene
-
-HEADLINES = 6
-"""Most findings on the first screen."""
-
-SENTENCES = 3
-"""Most of them in words."""
-
-_SYMBOL = re.compile(
-    r"(?<![\w/])([A-Za-zν])_(int|FE|[a-z]{1,2})(?![\w])|(?<=/)([A-Za-z])_([a-z])\b"
-)
-
-
-_POWER = re.compile(r"(?<![\w.])(\d(?:\.\d+)?)e(-?\d+)\b")
-
-_TIED = re.compile(r" (?=[%=≥])|(?<=[=≥]) ")
-"""Blanks at which a line does not break: before a per cent sign, around an equals sign."""
 
 
 @dataclass(frozen=True)
@@ -82,7 +68,8 @@ def write_report(results: Path, path: Path, scenes: Iterable[Scene] | None = Non
     wanted = found_scenes(results) if scenes is None else list(scenes)
     sections = [section for scene in wanted if (section := build_section(scene, results))]
     done = [section.name for section in sections]
-    shown = headlines(sections)
+    first = front(sections)
+    chief = first.chief[1] if first.chief else None
     page = (
         _environment()
         .get_template("report.html.j2")
@@ -90,15 +77,18 @@ def write_report(results: Path, path: Path, scenes: Iterable[Scene] | None = Non
             sections=sections,
             beside=_address(results, path.parent),
             missing=[scene.name for scene in wanted if scene.name not in done],
-            headlines=shown,
+            front=first,
+            chief=chief,
             models=_models(sections),
             provenance=_provenance(sections),
+            costs=cost_lines(sections),
+            library=drawing_library() if _is_interactive(sections) else "",
             written=datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC"),
         )
     )
     with replacing(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
-    return Written(path, done, [finding.text for _, finding in shown[:SENTENCES]])
+    return Written(path, done, first.sentences)
 
 
 def _address(folder: Path, page_folder: Path) -> str:
@@ -107,42 +97,8 @@ def _address(folder: Path, page_folder: Path) -> str:
     return "" if relative == "." else f"{quote(relative)}/"
 
 
-def headlines(sections: Iterable[Section]) -> list[tuple[Section, Finding]]:
-    """Findings for the first screen: of each topic the one that comes first on the page.
-
-    Parameters
-    ----------
-    sections
-        The page's sections in order.
-    """
-    chosen = [
-        (section, finding) for section in sections for finding in section.findings if finding.key
-    ]
-    first = {finding.topic: (section, finding) for section, finding in reversed(chosen)}
-    return [pair for pair in chosen if pair in first.values()][:HEADLINES]
-
-
-def with_subscripts(text: str) -> Markup:
-    """Set the symbols in a text with italics and subscripts, its numbers with powers of ten.
-
-    Examples
-    --------
-    >>> str(with_subscripts("E_i/E_m < 12"))
-    '<i>E</i><sub>i</sub>/<i>E</i><sub>m</sub> &lt; 12'
-    >>> str(with_subscripts("4.9e-7, 1e6"))
-    '4.9·10<sup>−7</sup>, 10<sup>6</sup>'
-    """
-
-    def symbol(match: re.Match[str]) -> str:
-        head, sub = match[1] or match[3], match[2] or match[4]
-        return f"<i>{head}</i><sub>{sub}</sub>"
-
-    def power(match: re.Match[str]) -> str:
-        mantissa = "" if match[1] == "1" else f"{match[1]}·"
-        return f"{mantissa}10<sup>{match[2].replace('-', '−')}</sup>"
-
-    unbroken = _TIED.sub("\u00a0", text)
-    return Markup(_POWER.sub(power, _SYMBOL.sub(symbol, str(escape(unbroken)))))
+def _is_interactive(sections: Iterable[Section]) -> bool:
+    return any(section.interactive for section in sections)
 
 
 def _environment() -> Environment:

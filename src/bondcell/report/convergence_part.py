@@ -67,10 +67,13 @@ def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
     told = structured.loc[structured["error"].idxmin()] if cheap.empty else cheap.iloc[0]
     reached = number(max(told["error"], TARGET), 2)
     text = f"{where}: the structured mesh reaches {reached} with {_cost(told)}"
+    brief = (
+        f"Finite elements themselves reach {reached} with {_cost(told)} (the case {_case(rows)})."
+    )
     key = f"{reached} in {quantity(told['seconds'], 's', 2)}"
     label = f"error and time of finite elements, {case_name(case)}"
     if triangles.empty:
-        yield Finding(f"{text}.", key, label, topic="cost")
+        yield Finding(f"{text}.", key, label, "cost", brief)
         return
     last = triangles.loc[triangles["error"].idxmin()]
     text += (
@@ -86,7 +89,7 @@ def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
         text += f". Just as accurate, the structured mesh takes {_cost(same.iloc[0])}"
         if factor > 1:
             text += f", {number(factor, 2)} times less"
-    yield Finding(f"{text}.", key, label, topic="cost")
+    yield Finding(f"{text}.", key, label, "cost", brief)
 
 
 def _case(rows: pd.DataFrame) -> str:

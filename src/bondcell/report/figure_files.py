@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import base64
+import re
+from collections.abc import Container
 from dataclasses import dataclass
 from pathlib import Path
+from urllib.parse import quote
 from xml.etree import ElementTree
 
-LARGEST_SVG = 700_000
-"""A larger SVG [bytes] is embedded as its PNG."""
+SMALL_SVG, SAVING = 120_000, 1.5
+"""An SVG above so many bytes is embedded as its PNG if that is so many times smaller."""
+
+UNQUOTED = " !$&'()*+,/:;=?@[]{}|~^-_.\\`"
+"""Characters that stand for themselves in a quoted attribute's data address."""
 
 ORDER = (
     "relaxation",
@@ -51,8 +57,8 @@ class EmbeddedFigure:
         What is drawn, and what is seen in it.
     path
         The file, for a link.
-    width
-        Natural width [px].
+    width, height
+        Natural size [px].
     """
 
     name: str
@@ -61,18 +67,55 @@ class EmbeddedFigure:
     description: str
     path: Path
     width: int
+    height: int
 
 
-def embedded_figures(folder: Path) -> list[EmbeddedFigure]:
-    """All figures of a folder, the main one first; none if there is no folder.
+def embedded_figures(folder: Path, without: Container[str] = ()) -> list[EmbeddedFigure]:
+    """The figures of a folder, the main one first; none if there is no folder.
 
     Parameters
     ----------
     folder
         Where `bondcell.figures.draw_scene` wrote.
+    without
+        Names of figures that are not wanted.
     """
     paths = sorted(folder.glob("*.svg"), key=lambda path: (_rank(path.stem), path.stem))
-    return [_embedded(path) for path in paths]
+    return [_embedded(path) for path in paths if path.stem not in without]
+
+
+def _pixels(length: str) -> int:
+    return round(float(length.removesuffix("pt")) * 4 / 3)
+
+
+def shortened(svg: str) -> str:
+    r"""A drawing without what nobody sees: metadata, blanks, digits beyond a hundredth of a point.
+
+    Parameters
+    ----------
+    svg
+        What matplotlib wrote.
+
+    Examples
+    --------
+    >>> shortened('<path d="M 1.23456 2.000001\nL 3.5 4 " id="a"/>\n')
+    '<path d="M1.23 2L3.5 4" id="a"/>'
+    """
+    body = svg[svg.index("<svg") :] if "<svg" in svg else svg
+    body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)
+    body = re.sub(r"scale\([^)]*\)|-?\d+\.\d{3,}", _rounded, body)
+    body = re.sub(r'(?<= d=")[^"]+', _path, body)
+    return re.sub(r">\s+<", "><", body).strip()
+
+
+def _rounded(match: re.Match[str]) -> str:
+    if match[0].startswith("scale"):
+        return match[0]
+    return f"{float(match[0]):.2f}".rstrip("0").rstrip(".")
+
+
+def _path(match: re.Match[str]) -> str:
+    return re.sub(r"\s*([A-Za-z])\s*", r"\1", " ".join(match[0].split()))
 
 
 def _rank(name: str) -> int:
@@ -80,18 +123,21 @@ def _rank(name: str) -> int:
 
 
 def _embedded(path: Path) -> EmbeddedFigure:
-    content = path.read_bytes()
-    root = ElementTree.fromstring(content)
+    drawn = path.read_text(encoding="utf-8")
+    root = ElementTree.fromstring(drawn)
+    short = shortened(drawn)
     picture = path.with_suffix(".png")
-    if len(content) > LARGEST_SVG and picture.is_file():
-        kind, content = "image/png", picture.read_bytes()
+    if picture.is_file() and len(short) > max(SMALL_SVG, SAVING * picture.stat().st_size):
+        content = base64.b64encode(picture.read_bytes()).decode()
+        source = f"data:image/png;base64,{content}"
     else:
-        kind = "image/svg+xml"
+        source = f"data:image/svg+xml,{quote(short, safe=UNQUOTED)}"
     return EmbeddedFigure(
         name=path.stem,
-        source=f"data:{kind};base64,{base64.b64encode(content).decode()}",
+        source=source,
         caption=root.findtext(f".//{_DUBLIN_CORE}title", default=path.stem.replace("_", " ")),
         description=root.findtext(f".//{_DUBLIN_CORE}description", default=""),
         path=path,
-        width=round(float(root.get("width", "600pt").removesuffix("pt")) * 4 / 3),
+        width=_pixels(root.get("width", "600pt")),
+        height=_pixels(root.get("height", "400pt")),
     )

@@ -19,9 +19,12 @@ class Finding:
         What the figure is.
     topic
         What it is about: of each topic one finding stands on the first screen.
+    brief
+        The finding in one sentence for the first screen, where `text` is longer than that.
     """
 
     text: str
     key: str = ""
     label: str = ""
     topic: str = ""
+    brief: str = ""

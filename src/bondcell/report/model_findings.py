@@ -64,6 +64,7 @@ def _by_poisson(study: xr.Dataset, best: pd.Series, worst: pd.Series, reference:
         f"{low} → {high}",
         f"median error of FSI, {at(POISSON, best['group_value'])} → {number(worst['group_value'])}",
         topic="series model",
+        brief=f"{text}, but by {high} with {there}: too {side}, for it ignores Poisson's effect.",
     )
 
 
@@ -99,11 +100,11 @@ def ranking(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Finding]:
         )
         if axis == "all":
             text = (
-                f"No formula stays nearer to finite elements than {bound} at every point: that is "
-                f"the largest error of {model_phrase(safest['model'])}, the smallest of its kind; "
-                f"{closest}."
+                f"Of {len(complete)} formulas compared here none stays nearer to finite elements "
+                f"than {bound} at every point: that is the largest error of "
+                f"{model_phrase(safest['model'])}, the smallest of its kind; {closest}."
             )
-            yield Finding(text, bound, "largest error of the best formula", topic="ranking")
+            yield Finding(text, bound, "largest error of the best formula", "ranking")
         else:
             worst = f"the smallest largest error ({bound}) is that of"
             name = model_phrase(safest["model"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,10 +13,20 @@ from bondcell.report.atlas_part import atlas_part
 from bondcell.report.convergence_part import convergence_findings, convergence_lines
 from bondcell.report.figure_files import EmbeddedFigure, embedded_figures
 from bondcell.report.findings import Finding
+from bondcell.report.flag_table import flag_lines
+from bondcell.report.interactive.figure import InteractiveFigure
 from bondcell.report.relaxation_part import (
     read_relaxing,
     relaxation_findings,
     relaxation_lines,
+)
+from bondcell.report.scene_cost import Cost, scene_cost
+from bondcell.report.scene_figures import (
+    atlas_figures,
+    ladder_figures,
+    relaxing_figures,
+    specimen_figures,
+    sweep_figures,
 )
 from bondcell.report.setup_table import Line, setup_lines
 from bondcell.report.specimen_part import specimen_part
@@ -26,7 +37,7 @@ from bondcell.results.accuracy import accuracy_table
 from bondcell.results.load_groups import read_loads
 from bondcell.results.stability import stability_table
 from bondcell.results.view import model_names
-from bondcell.specimen.view import read_specimen
+from bondcell.specimen.view import error_table, read_specimen
 from bondcell.storage import read_dataset
 
 if TYPE_CHECKING:
@@ -48,6 +59,10 @@ FILES = (
 """Files of a scene that the page links."""
 
 
+SPECIMEN_PICTURES = 3
+"""Pictures of a specimen that are not folded away."""
+
+
 @dataclass(frozen=True)
 class Link:
     """A file beside the page."""
@@ -58,18 +73,72 @@ class Link:
 
 @dataclass(frozen=True)
 class Section:
-    """What the page says about a scene."""
+    """What the page says about a scene.
+
+    Parameters
+    ----------
+    name, title, question, setup
+        The scene and what it was asked.
+    findings
+        What it shows, most important first.
+    interactive, figures
+        Figures with controls, and static ones that these do not replace; main ones first.
+    tables
+        The main one first.
+    links
+        Files.
+    models
+        Names of the models in it.
+    loads, ladders
+        Its results by load, and its convergence study.
+    is_atlas, is_specimen
+        What kind of scene it is.
+    provenance, cost
+        Where it comes from, and what it took.
+    """
 
     name: str
     title: str
     question: str
     setup: list[Line]
     findings: list[Finding]
+    interactive: list[InteractiveFigure]
     figures: list[EmbeddedFigure]
     tables: list[Table]
     links: list[Link]
     models: list[str]
+    loads: Mapping[str, xr.Dataset]
+    ladders: xr.Dataset | None = None
+    is_atlas: bool = False
+    is_specimen: bool = False
     provenance: dict[str, str] = field(default_factory=dict)
+    cost: Cost = field(default_factory=Cost)
+
+    @property
+    def open_figures(self) -> int:
+        """Static figures that are not folded away: without others the main one."""
+        if self.is_specimen:  # its pictures are what it is about
+            return SPECIMEN_PICTURES
+        return 0 if self.interactive and not self.is_atlas else 1
+
+
+@dataclass
+class _Content:
+    """What is gathered for a section."""
+
+    findings: list[Finding] = field(default_factory=list)
+    tables: list[Table | None] = field(default_factory=list)
+    interactive: list[InteractiveFigure | None] = field(default_factory=list)
+
+    def add(
+        self,
+        findings: Iterable[Finding],
+        tables: Iterable[Table | None],
+        interactive: Iterable[InteractiveFigure | None] = (),
+    ) -> None:
+        self.findings += findings
+        self.tables += tables
+        self.interactive += interactive
 
 
 def build_section(scene: Scene, results: Path) -> Section | None:
@@ -83,51 +152,64 @@ def build_section(scene: Scene, results: Path) -> Section | None:
         The folder with a folder for each scene.
     """
     folder = results / scene.name
-    if not (folder / "study.nc").is_file():
+    file = folder / "study.nc"
+    if not file.is_file():
         return None
-    loads = read_loads(folder / "study.nc")
+    loads = read_loads(file)
     study = next(iter(loads.values()))
-    ladders = None
-    if scene.convergence is not None:
-        ladders = read_dataset(folder / "study.nc", group="convergence")
-    findings: list[Finding] = []
-    tables: list[Table | None] = []
+    ladders = read_dataset(file, group="convergence") if scene.convergence else None
+    content = _Content()
+    if ladders is not None:
+        figures = ladder_figures(scene.name, ladders)
+        content.add(convergence_findings(ladders), convergence_lines(ladders), figures)
     if scene.stability:
         points = stability_table(loads)
-        findings += stability_findings(points, study)
-        tables += stability_lines(points, study)
-    if scene.atlas:
-        said, shown = atlas_part(loads)
-        findings += said
-        tables += shown
-    elif scene.prony is not None:
-        relaxing = read_relaxing(folder, loads, with_methods=scene.prony.methods is not None)
-        findings += relaxation_findings(relaxing)
-        tables += relaxation_lines(relaxing)
-    elif scene.specimen is not None:
-        said, shown = specimen_part(read_specimen(folder / "study.nc"))
-        findings += said
-        tables += shown
-    elif scene.models or not scene.stability:
-        for load, found in loads.items():
-            table = accuracy_table(found)
-            findings += _under(load, sweep_findings(found, table), several=len(loads) > 1)
-            tables += [accuracy_lines(found, table), influence_lines(found), value_lines(found)]
-    if ladders is not None:
-        findings = [*convergence_findings(ladders), *findings]
-        tables = [*convergence_lines(ladders), *tables]
+        content.add(stability_findings(points, study), stability_lines(points, study))
+    _add_main(content, scene, folder, loads)
+    content.tables.append(flag_lines(loads))
+    interactive = [figure for figure in content.interactive if figure is not None]
+    replaced = {name for figure in interactive for name in figure.replaces}
     return Section(
         name=scene.name,
         title=scene.title,
         question=scene.question or "",
         setup=setup_lines(scene),
-        findings=findings,
-        figures=embedded_figures(folder / "figures"),
-        tables=[table for table in tables if table is not None],
+        findings=content.findings,
+        interactive=interactive,
+        figures=embedded_figures(folder / "figures", without=replaced),
+        tables=[table for table in content.tables if table is not None],
         links=_links(folder),
         models=list(dict.fromkeys(name for found in loads.values() for name in model_names(found))),
+        loads=loads,
+        ladders=ladders,
+        is_atlas=scene.atlas,
+        is_specimen=scene.specimen is not None,
         provenance=_provenance(study),
+        cost=scene_cost(loads, file),
     )
+
+
+def _add_main(
+    content: _Content, scene: Scene, folder: Path, loads: Mapping[str, xr.Dataset]
+) -> None:
+    """What the scene is about: an atlas, relaxation, the specimen or a sweep."""
+    if scene.atlas:
+        content.add(*atlas_part(loads), atlas_figures(scene.name, loads))
+    elif scene.prony is not None:
+        relaxing = read_relaxing(folder, loads, with_methods=scene.prony.methods is not None)
+        figures = relaxing_figures(scene.name, relaxing.study, relaxing.methods)
+        content.add(relaxation_findings(relaxing), relaxation_lines(relaxing), figures)
+    elif scene.specimen is not None:
+        results = read_specimen(folder / "study.nc")
+        figures = specimen_figures(scene.name, error_table(results))
+        content.add(*specimen_part(results), figures)
+    elif scene.models or not scene.stability:
+        for load, found in loads.items():
+            table = accuracy_table(found)
+            said = _under(load, sweep_findings(found, table), several=len(loads) > 1)
+            shown = [accuracy_lines(found, table), influence_lines(found), value_lines(found)]
+            content.add(said, shown)
+        content.interactive += sweep_figures(scene.name, loads)
 
 
 def _under(load: str, findings: list[Finding], *, several: bool) -> list[Finding]:

@@ -55,12 +55,13 @@ def particles(study: xr.Dataset) -> Iterator[Finding]:
     known = table[table["ratio_from"].notna()]
     if known.empty:
         return
-    parts, shortfalls = [], []
+    parts, starts, shortfalls = [], [], []
     for method, rows in known.groupby("method", sort=False):
         against = "the stiffness k_int of its interface" if method == "fsi" else "rigid particles"
         name = "FSI" if method == "fsi" else model_name(str(method))
         spans = _spans(rows)
         parts.append(f"by {name} from E_i/E_m = {spans} on (against {against})")
+        starts.append(f"E_i/E_m = {spans} by {name}")
         gap = rows["deviation_at_paper_ratio"].dropna()
         if not gap.empty:
             low, high = percent(gap.min()), percent(gap.max())
@@ -73,7 +74,9 @@ def particles(study: xr.Dataset) -> Iterator[Finding]:
             f"{listed(shortfalls)} below that limit."
         )
     key = f"{symbol(RATIO_AXIS)} ≥ {_range(known['ratio_from'])}"
-    yield Finding(text, key, "particles no longer matter", topic="particles")
+    brief = f"The particles matter, by more than 1 % of K_n, up to {listed(starts)}"
+    brief += f"; the paper puts this at {number(PAPER_RATIO)}." if lowest > PAPER_RATIO else "."
+    yield Finding(text, key, "particles no longer matter", "particles", brief)
 
 
 def _spans(rows: pd.DataFrame) -> str:

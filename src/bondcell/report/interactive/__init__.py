@@ -1,0 +1,1 @@
+"""Figures with controls: Vega-Lite specifications, compact data, sliders, menus and switches."""
