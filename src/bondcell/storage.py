@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -97,6 +98,36 @@ def read_dataset(path: str | Path, group: str | None = None) -> xr.Dataset:
         value = group if missing_group else str(source)
         allowed = "a group of the file" if missing_group else f"{READABLE} ({error})"
         raise DataError([Violation(field, value, allowed)], str(source)) from error
+
+
+def group_names(path: str | Path) -> list[str]:
+    """Names of the groups of a file, one below the other ones joined by ``/``.
+
+    Parameters
+    ----------
+    path
+        A file that `write_dataset` made.
+
+    Raises
+    ------
+    DataError
+        The file is missing or damaged.
+    """
+    source = Path(path)
+    if not source.is_file():
+        raise DataError([Violation("file", str(source), "an existing file")], str(source))
+    try:
+        with netCDF4.Dataset(source) as file:
+            return list(_below(file))
+    except (OSError, RuntimeError) as error:
+        allowed = f"{READABLE} ({error})"
+        raise DataError([Violation("file", str(source), allowed)], str(source)) from error
+
+
+def _below(group: Any) -> Iterator[str]:
+    for name, inner in group.groups.items():
+        yield name
+        yield from (f"{name}/{deeper}" for deeper in _below(inner))
 
 
 @contextmanager

@@ -242,7 +242,9 @@ def test_show(result, capsys):
 
 def test_show_a_single_point(synthetic, tmp_path, capsys):
     path = write_dataset(synthetic.point, tmp_path / "study.nc")
-    assert main(["show", str(path), "--plot", str(tmp_path / "bars.svg")]) == 0
+    assert main(["show", str(path)]) == 0
+    words = ["--plot", "model", "stiffness", "-o", str(tmp_path / "bars.svg")]
+    assert main(["show", str(path), *words]) == 0
     assert (tmp_path / "bars.svg").stat().st_size > 1000
 
 
@@ -253,27 +255,6 @@ def test_show_a_convergence_study(synthetic, tmp_path, capsys):
     out = capsys.readouterr().out
     assert re.search(r"base +structured +6 +0.0025 to 1.5e-8 +864 +360 ms", out)
     assert re.search(r"base +fsi +1 +0.48 +- +100 ns", out)
-
-
-def test_plot_on_request(result, tmp_path, capsys):
-    out = tmp_path / "out.png"
-    assert main(["show", result, "--plot", str(out), "--x", "poisson_m"]) == 0
-    assert out.read_bytes().startswith(b"\x89PNG")
-
-
-@pytest.mark.parametrize(
-    ("more", "said"),
-    [
-        (["--plot", "out.txt"], "--plot = 'out.txt'"),
-        (["--plot", "/nowhere/at/all/out.png"], "existing folder"),
-        (["--plot", "out.png", "--x", "gapp"], "--x = 'gapp'"),
-    ],
-)
-def test_bad_plot(result, more, said, capsys):
-    assert main(["show", result, *more]) == 2
-    out, err = capsys.readouterr()
-    assert said in err
-    assert out == ""
 
 
 def test_half_written_result(result, tmp_path, capsys):
@@ -296,13 +277,6 @@ def test_result_without_numbers(synthetic, tmp_path, capsys):
     path = write_dataset(text, tmp_path / "text.nc")
     assert main(["show", str(path)]) == 2
     assert "stiffness(model, axes...)" in capsys.readouterr().err
-
-
-def test_plot_where_nothing_can_be_written(result, tmp_path, capsys):
-    (tmp_path / "taken.png").mkdir()
-    assert main(["show", result, "--plot", str(tmp_path / "taken.png")]) == 2
-    assert "a file that can be written" in capsys.readouterr().err
-    assert [path.name for path in tmp_path.iterdir() if path.suffix] == ["taken.png"]
 
 
 def test_terminal_that_cannot_print_greek():

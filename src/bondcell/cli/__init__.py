@@ -16,6 +16,16 @@ GOOD, FAILED, BAD_INPUT = 0, 1, 2
 INTERRUPTED = 128 + signal.SIGINT
 BROKEN_PIPE = 128 + 13  # what a shell reports for SIGPIPE
 
+EXAMPLES = """\
+examples (a value may carry its unit; bare numbers are SI):
+  bondcell stiffness --radius "7.5 mm" --gap "0.5 mm" --young-particle "30 GPa" \\
+      --poisson-particle 0.25 --young-matrix "1.4 MPa" --poisson-matrix 0.46 --model film
+  bondcell show results/figure4/study.nc
+  bondcell COMMAND --help
+
+exit status: 0 good, 1 a value could not be computed or files differ, 2 bad input
+"""
+
 _NUMBER_LIKE = re.compile(r"-(\.?\d|inf|nan)", re.IGNORECASE)
 
 
@@ -38,7 +48,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")
     try:
         try:
-            chosen = _parser().parse_args(_with_attached_numbers(words))
+            chosen = parser().parse_args(_with_attached_numbers(words))
             status: int = chosen.run(chosen)
         except SystemExit as leaving:  # argparse leaves this way, also for --help
             status = leaving.code if isinstance(leaving.code, int) else BAD_INPUT
@@ -49,7 +59,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The reader went away; what is left in the buffer must not complain again at exit.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BROKEN_PIPE
-    except BondcellError as error:
+    except (BondcellError, OSError) as error:
         print(f"bondcell: {error}", file=sys.stderr)
         return FAILED
     except KeyboardInterrupt:
@@ -65,20 +75,30 @@ def _complain(error: InputError) -> int:
     return BAD_INPUT
 
 
-def _parser() -> argparse.ArgumentParser:
-    from bondcell.cli import advise, model_list, show, stiffness, validation
+def parser() -> argparse.ArgumentParser:
+    """The parser of the command line with all subcommands."""
+    from bondcell.cli import (
+        advise,
+        compare,
+        model_list,
+        report_page,
+        show,
+        stiffness,
+        validation,
+    )
 
-    parser = argparse.ArgumentParser(
+    words = argparse.ArgumentParser(
         prog="bondcell",
         description="Stiffness of two spheres bonded through a matrix.",
-        epilog="Exit status: 0 good, 1 a value could not be computed, 2 bad input.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
-    parser.add_argument("--version", action=_Version, help="print the version and leave")
-    commands = parser.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (stiffness, advise, validation, show, model_list):
+    words.add_argument("--version", action=_Version, help="print the version and leave")
+    commands = words.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for command in (stiffness, advise, validation, show, compare, report_page, model_list):
         command.add_to(commands)
-    return parser
+    return words
 
 
 class _Version(argparse.Action):

@@ -1,257 +1,195 @@
-"""``bondcell show``: what a result file holds, and a plot of it on request."""
+"""``bondcell show``: browse a file of results."""
 
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from bondcell.errors import DataError, InputError, Violation
+from bondcell.errors import InputError, Violation
 
 if TYPE_CHECKING:
     import pandas as pd
     import xarray as xr
 
+    from bondcell.figures.style import Drawing
+
 SUFFIXES = (".png", ".svg", ".pdf")
 """Formats of a plot."""
+
+EXAMPLES = """\
+examples:
+  bondcell show results/figure4/study.nc
+  bondcell show results/figure4/study.nc --plot modulus_ratio stiffness -o curves.svg
+  bondcell show results/prony/study.nc --plot time relaxation -o curves.png \\
+      --at series=sbs_ac13 --at convention=constant_bulk --at poisson_m=0.46 --at "gap=0.5 mm"
+  bondcell show results/figure4/study.nc --table --at model=fe --variable stiffness
+  bondcell show results/extreme_loads/study.nc --group torsion --csv -o torsion.csv
+  bondcell show results/figure4/study.nc --json
+"""
 
 
 def add_to(commands: Any) -> None:
     """Add the subcommand and its options."""
     parser = commands.add_parser(
         "show",
-        help="browse a result file",
-        description="Dimensions, ranges, flags and worst errors of a result, as in "
-        "results/figure4/study.nc.",
+        help="browse a file of results",
+        description="Dimensions, ranges, flags and worst errors of a file of results; a plot or a "
+        "table of it on request.",
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
     parser.set_defaults(run=run)
     parser.add_argument("file", metavar="FILE", help="a study.nc")
-    parser.add_argument(
-        "--plot", metavar="OUT", help=f"draw stiffness and errors ({', '.join(SUFFIXES)})"
+    what = parser.add_mutually_exclusive_group()
+    what.add_argument(
+        "--plot",
+        nargs=2,
+        metavar=("X", "Y"),
+        help="draw the variable Y over the axis X; stiffness comes with the models' errors",
     )
-    parser.add_argument("--x", metavar="AXIS", help="axis along x of the plot")
+    what.add_argument("--table", action="store_true", help="print a line for each point")
+    what.add_argument("--csv", action="store_true", help="the same as CSV, to -o or to be piped")
+    what.add_argument("--json", action="store_true", help="print what is in the file as JSON")
+    parser.add_argument(
+        "-o", "--output", metavar="OUT", help=f"file of the plot ({', '.join(SUFFIXES)}) or CSV"
+    )
+    parser.add_argument("--group", metavar="NAME", help="a group of the file (default: the root)")
+    parser.add_argument(
+        "--variable",
+        action="append",
+        default=[],
+        metavar="NAME",
+        help="a variable of the table; may be repeated (default: all on the same axes)",
+    )
+    parser.add_argument(
+        "--at",
+        action="append",
+        default=[],
+        metavar="AXIS=VALUE",
+        help="only this position of an axis, with a unit as in 'gap=0.5 mm'; may be repeated",
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print the overview; draw if asked."""
-    from bondcell.results.load_groups import read_loads
+    """Print, draw or write what was asked for."""
+    _check(arguments)
+    if arguments.json:
+        from bondcell.cli.contents import contents
 
-    study, *others = read_loads(arguments.file).values()
-    if "softest" in study:
-        print(_specimen(study, arguments.file))
-        return 0
-    ladders = _convergence(arguments.file)
-    _check_content(study, ladders, arguments.file)
-    _check_plot(study, arguments)
-    print(_overview(study, arguments.file))
-    for other in others:
-        print(f"\n{_results(other)}")
-    if ladders is not None:
-        print(f"\nconvergence study, errors against the finest level\n{_ladders(ladders)}")
-    if arguments.plot:
-        _draw(study, arguments)
+        print(json.dumps(contents(arguments.file), indent=2))
+    elif arguments.plot or arguments.table or arguments.csv:
+        from bondcell.results.selection import narrowed
+
+        data = narrowed(_read(arguments), arguments.at)
+        if arguments.plot:
+            _write_plot(_drawing(data, *arguments.plot), arguments)
+        else:
+            _write_table(data, arguments)
+    else:
+        from bondcell.cli.overview import print_overview
+
+        print_overview(arguments.file)
     return 0
 
 
-def _specimen(study: xr.Dataset, path: str) -> str:
-    """Every method of a specimen beside the best known energy."""
-    from bondcell.specimen.view import error_table, read_specimen
-
-    table = error_table(read_specimen(path))
-    return f"{_heading(study, path)}\n\n{table.to_string(index=False, na_rep='-')}"
-
-
-def _check_content(study: xr.Dataset, ladders: xr.Dataset | None, path: str) -> None:
-    from bondcell.results.view import model_names
-
-    stiffness = study.get("stiffness")
-    numeric = stiffness is None or stiffness.dtype.kind in "iuf"
-    if not numeric or not (model_names(study) or ladders is not None):
-        allowed = "a result of this package: stiffness(model, axes...), or a group convergence"
-        raise DataError([Violation("file", path, allowed)], path)
-
-
-def _check_plot(study: xr.Dataset, arguments: argparse.Namespace) -> None:
-    from bondcell.results.view import swept_axes
-
-    axes = swept_axes(study)
+def _check(arguments: argparse.Namespace) -> None:
+    """What can be said before anything is read."""
     violations = []
-    if arguments.plot and Path(arguments.plot).suffix.lower() not in SUFFIXES:
+    out = arguments.output
+    takes_file = arguments.plot or arguments.csv
+    if out is not None and not takes_file:
+        violations.append(Violation("-o", out, "an option of --plot and --csv"))
+    elif out is not None and Path(out).is_dir():
+        violations.append(Violation("-o", out, "a file, not a folder"))
+    elif out is not None and not Path(out).absolute().parent.is_dir():
+        violations.append(Violation("-o", out, "a file in an existing folder"))
+    if arguments.plot and Path(out or "").suffix.lower() not in SUFFIXES:
         allowed = f"a file name that ends in {', '.join(SUFFIXES)}"
-        violations.append(Violation("--plot", arguments.plot, allowed))
-    elif arguments.plot and not Path(arguments.plot).absolute().parent.is_dir():
-        violations.append(Violation("--plot", arguments.plot, "a file in an existing folder"))
-    if arguments.plot and "stiffness" not in study:
-        allowed = "a result with the variable stiffness; this one has none"
-        violations.append(Violation("--plot", arguments.plot, allowed))
-    if arguments.x and arguments.x not in axes:
-        allowed = f"one of the swept axes: {', '.join(axes) or 'none here'}"
-        violations.append(Violation("--x", arguments.x, allowed))
+        violations.append(Violation("-o", out, allowed))
+    if arguments.variable and not (arguments.table or arguments.csv):
+        violations.append(Violation("--variable", arguments.variable, "for --table and --csv"))
+    if (arguments.at or arguments.group) and not (takes_file or arguments.table):
+        option = "--at" if arguments.at else "--group"
+        value = arguments.at or arguments.group
+        violations.append(Violation(option, value, "for --plot, --table and --csv"))
     if violations:
         raise InputError(violations)
-    if arguments.x and not arguments.plot:
-        print("bondcell: warning: --x concerns --plot only", file=sys.stderr)
 
 
-def _overview(study: xr.Dataset, path: str) -> str:
-    blocks = [_heading(study, path), _axes(study)]
-    if "stiffness" in study and "model" in study["stiffness"].dims:
-        blocks.append(_results(study))
-    return "\n\n".join(block for block in blocks if block)
+def _read(arguments: argparse.Namespace) -> xr.Dataset:
+    """The asked group, a load's with the scene's inputs."""
+    from bondcell.results.load_groups import read_loads
+    from bondcell.storage import group_names, read_dataset
+
+    if arguments.group is None:
+        return read_dataset(arguments.file)
+    name = arguments.group.strip("/")
+    known = group_names(arguments.file)
+    if name not in known:
+        allowed = f"a group of the file: {', '.join(known) or 'it has none'}"
+        raise InputError([Violation("--group", arguments.group, allowed)])
+    loads = read_loads(arguments.file)
+    return loads[name] if name in loads else read_dataset(arguments.file, group=name)
 
 
-def _results(study: xr.Dataset) -> str:
-    """Values and errors of the models under one load."""
-    from bondcell.results.accuracy import accuracy_table
-    from bondcell.results.view import load_name
-
-    blocks = [f"load {load_name(study)}\n{_models(study)}"]
-    table = accuracy_table(study)
-    if not table.empty:
-        blocks.append(_errors(study, table))
-    return "\n\n".join(blocks)
-
-
-def _heading(study: xr.Dataset, path: str) -> str:
-    known = ("source", "source_revision", "machine")
-    lines = [f"{path}: {study.attrs.get('title', 'untitled')}"]
-    lines += [f"  {name}: {study.attrs[name]}" for name in known if name in study.attrs]
-    return "\n".join(lines)
-
-
-def _axes(study: xr.Dataset) -> str:
-    """Every dimension, then every input that does not vary."""
-    from bondcell.cell import UNITS
-    from bondcell.cli.text_table import text_table
-    from bondcell.results.view import axis_unit, axis_values
-    from bondcell.wording import meaning, quantity
-
-    rows = []
-    for name, size in study.sizes.items():
-        if name == "model":
-            continue
-        values, unit = axis_values(study, name), axis_unit(study, str(name))
-        span = quantity(values.min(), unit)
-        span += f" to {quantity(values.max(), unit)}" if size > 1 else ""
-        rows.append([str(name), f"{size} values", span, meaning(str(name))])
-    for name, unit in UNITS.items():
-        if name in study and not study[name].dims:
-            rows.append([name, "fixed", quantity(study[name].item(), unit), meaning(name)])
-    return text_table(rows, ["input", "", "range", "meaning"])
-
-
-def _models(study: xr.Dataset) -> str:
-    from bondcell.cli.text_table import text_table
-    from bondcell.results.view import model_names, stiffness_unit
-    from bondcell.wording import quantity
-
-    unit = stiffness_unit(study)
-    rows = []
-    for name in model_names(study):
-        here = study.sel(model=name)
-        values = here["stiffness"].values[~here["stiffness"].isnull().values]
-        span = "no value"
-        if values.size:
-            span = quantity(values.min(), unit)
-            span += f" to {quantity(values.max(), unit)}" if values.size > 1 else ""
-        estimate = _largest(here, "error_estimate", "{:.1e}")
-        seconds = quantity(here["seconds"].median().item(), "s", 3) if "seconds" in here else "-"
-        rows.append([str(name), span, _flags(here), estimate, seconds])
-    header = ["model", "stiffness", "points by flag", "largest error estimate", "median time"]
-    return text_table(rows, header)
-
-
-def _flags(here: xr.Dataset) -> str:
-    import numpy as np
-
-    from bondcell.status import Status
-
-    if "status" not in here:
-        return f"{here['stiffness'].size} points"
-    codes, counts = np.unique(here["status"].values, return_counts=True)
-    names = {flag.value: flag.name for flag in Status}
-    return ", ".join(
-        f"{names.get(int(code), f'flag {int(code)}')} {count}"
-        for code, count in zip(codes, counts, strict=True)
-    )
-
-
-def _largest(here: xr.Dataset, name: str, form: str) -> str:
-    value = float(here[name].max()) if name in here else float("nan")
-    return "-" if value != value else form.format(value)
-
-
-def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
-    from bondcell.cli.text_table import text_table
-    from bondcell.results.view import axis_unit, swept_axes
-    from bondcell.wording import at, percent
-
-    axes = swept_axes(study)
-    rows = []
-    for _, row in table[table["group_axis"] == "all"].iterrows():
-        where = ", ".join(at(axis, row[f"at_{axis}"], axis_unit(study, axis)) for axis in axes)
-        rows.append(
-            [
-                row["model"],
-                row["reference"],
-                percent(row["abs_error_max"]),
-                percent(row["abs_error_median"]),
-                where if row["points"] else "-",
-                str(row["points"]),
-                row["left_out_by"] or "-",
-            ]
-        )
-    header = ["model", "against", "max |error|", "median", "worst at", "points", "left out"]
-    return text_table(rows, header)
-
-
-def _ladders(convergence: xr.Dataset) -> str:
-    """Coarsest and finest error of each discretisation, and the error of each analytic model."""
-    from bondcell.cli.text_table import text_table
-    from bondcell.results.convergence import convergence_table
-    from bondcell.wording import number, quantity
-
-    rows = []
-    table = convergence_table(convergence)
-    for (case, method), levels in table.groupby(["case", "method"], sort=False):
-        known = levels[levels["error"].notna()]
-        if known.empty:
-            continue
-        last = known.iloc[-1]
-        errors = dict.fromkeys(number(error, 2) for error in known["error"].iloc[[0, -1]])
-        unknowns = str(last["dof"]).replace("<NA>", "-")
-        time = quantity(last["seconds"], "s", 2)
-        rows.append([str(case), str(method), f"{len(levels)}", " to ".join(errors), unknowns, time])
-    return text_table(rows, ["case", "method", "levels", "error", "unknowns", "time"])
-
-
-def _convergence(path: str) -> xr.Dataset | None:
-    from bondcell.storage import read_dataset
-
-    try:
-        return read_dataset(path, group="convergence")
-    except DataError as error:
-        if error.violations[0].field == "group":
-            return None
-        raise
-
-
-def _draw(study: xr.Dataset, arguments: argparse.Namespace) -> None:
+def _drawing(data: xr.Dataset, x: str, y: str) -> Drawing:
+    """Stiffness over a swept axis with the errors of the models; anything else plainly."""
     from bondcell.figures.bars import draw_bars
     from bondcell.figures.curves import draw_curves
     from bondcell.figures.style import drawing_style
+    from bondcell.figures.variable import draw_variable
     from bondcell.results.view import swept_axes
-    from bondcell.storage import replacing
 
     with drawing_style():
-        drawing = draw_curves(study, x=arguments.x) if swept_axes(study) else draw_bars(study)
-        suffix = Path(arguments.plot).suffix.lower().removeprefix(".")
-        try:
-            with replacing(arguments.plot) as temporary:
-                drawing.figure.savefig(temporary, format=suffix)
-        except OSError as error:
-            allowed = f"a file that can be written ({error.strerror or error})"
-            raise InputError([Violation("--plot", arguments.plot, allowed)]) from error
-    print(f"\ndrawn: {arguments.plot}")
+        if y == "stiffness" and y in data and "model" in data[y].dims:
+            axes = swept_axes(data)
+            if x in axes:
+                return draw_curves(data, x=x)
+            if x == "model" and not axes:
+                return draw_bars(data)
+        return draw_variable(data, x, y)
+
+
+def _write_plot(drawing: Drawing, arguments: argparse.Namespace) -> None:
+    from bondcell.figures.style import drawing_style
+    from bondcell.storage import replacing
+
+    suffix = Path(arguments.output).suffix.lower().removeprefix(".")
+    with drawing_style(), replacing(arguments.output) as temporary:
+        drawing.figure.savefig(temporary, format=suffix)
+    print(f"drawn: {arguments.output}\n{drawing.caption}")
+
+
+def _write_table(data: xr.Dataset, arguments: argparse.Namespace) -> None:
+    from bondcell.results.selection import as_table, chosen_variables
+    from bondcell.storage import replacing
+
+    table = as_table(data, chosen_variables(data, arguments.variable))
+    if arguments.table:
+        print(_text(table, data))
+    elif arguments.output is None:
+        table.to_csv(sys.stdout, index=False)
+    else:
+        with replacing(arguments.output) as temporary:
+            table.to_csv(temporary, index=False)
+        print(f"written: {arguments.output}, {len(table)} lines")
+
+
+def _text(table: pd.DataFrame, data: xr.Dataset) -> str:
+    """The table in columns, units in the head."""
+    from bondcell.cli.text_table import text_table
+    from bondcell.wording import unit_text
+
+    head = []
+    for name in table:
+        unit = unit_text(str(data[name].attrs.get("units", "1"))) if name in data else ""
+        head.append(f"{name} [{unit}]" if unit else str(name))
+    rows = [
+        [f"{value:.6g}" if isinstance(value, float) else str(value) for value in row]
+        for row in table.itertuples(index=False)
+    ]
+    return text_table(rows, head)
