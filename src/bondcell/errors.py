@@ -11,6 +11,10 @@ class BondcellError(Exception):
     """Base of everything this package raises on purpose."""
 
 
+LONGEST_SHOWN = 120
+"""Longest field or value that a message shows in full, in characters."""
+
+
 @dataclass(frozen=True)
 class Violation:
     """One thing that is wrong with an input.
@@ -30,7 +34,13 @@ class Violation:
     allowed: str
 
     def __str__(self) -> str:
-        return f"{self.field} = {self.value!r}: allowed is {self.allowed}"
+        # A file's own words reach the terminal only as far as they can be printed on one line.
+        field = self.field if self.field.isprintable() else ascii(self.field)[1:-1]
+        return f"{_cut(field)} = {_cut(repr(self.value))}: allowed is {self.allowed}"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= LONGEST_SHOWN else text[: LONGEST_SHOWN - 3] + "..."
 
 
 class InputError(BondcellError, ValueError):

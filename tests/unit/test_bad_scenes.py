@@ -6,14 +6,13 @@ import warnings
 from pathlib import Path
 
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from bondcell.errors import SceneError
 from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study_list import load_study_list
 from bondcell.scenes.validate import validate_file
-from bondcell.scenes.yaml_loading import MOST_NODES, load_mapping
+from bondcell.scenes.yaml_loading import load_mapping
+from bondcell.scenes.yaml_structure import MOST_NODES
 
 CELL = {
     "radius_i": "7.5 mm",
@@ -199,7 +198,7 @@ def test_all_slips_at_once():
 
 def test_value_is_shown_as_it_was_written():
     assert violations(spoiled("cell.gap", "0 mm"))["cell.gap"].value == "0 mm"
-    assert violations(spoiled("cell.gap", "x" * 500))["cell.gap"].value.endswith("...")
+    assert "xxx...: allowed" in str(violations(spoiled("cell.gap", "x" * 500))["cell.gap"])
 
 
 def test_wrong_base_is_not_blamed_on_the_ratio():
@@ -346,36 +345,6 @@ def test_bad_lists_of_scenes(tmp_path, text, field):
     with pytest.raises(SceneError) as caught:
         load_study_list(path)
     assert field in {violation.field for violation in caught.value.violations}
-
-
-def keys(block):
-    """All keys of nested mappings."""
-    for key, value in block.items():
-        yield key
-        if isinstance(value, dict):
-            yield from keys(value)
-
-
-LEAVES = st.one_of(
-    st.none(),
-    st.booleans(),
-    st.integers(-3, 30),
-    st.floats(),
-    st.sampled_from(["1 mm", "1 MPa", "rigid", "fsi", "roller", "normal", "lin", "x", ""]),
-)
-KEYS = st.sampled_from(sorted({*keys(SCENE), "gap_ratio", "start", "stop", "spacing", "bc", "zz"}))
-VALUES = st.recursive(
-    LEAVES, lambda v: st.lists(v, max_size=3) | st.dictionaries(KEYS, v, max_size=4), max_leaves=12
-)
-
-
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.too_slow])
-@given(st.sampled_from(sorted(SCENE)), VALUES, st.dictionaries(KEYS, VALUES, max_size=3))
-def test_any_content_is_a_scene_or_a_scene_error(key, value, others):
-    with contextlib.suppress(SceneError):
-        parse_scene({**SCENE, key: value})
-    with contextlib.suppress(SceneError):
-        parse_scene({**others, key: value})
 
 
 SPECIMEN = {"title": "A specimen", "specimen": {"lattices": ["lattice_fsi"]}}

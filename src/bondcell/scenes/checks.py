@@ -151,8 +151,7 @@ def _rigid_violations(
     scene: Scene, given: Mapping[str, float], wrong: Collection[str], incomplete: bool
 ) -> Iterator[Violation]:
     """Rigid particles need a matrix of their own, and no other axis that sets their modulus."""
-    ratios = scene.axes.get("modulus_ratio")
-    if ratios is None or not np.isinf(ratios).any():
+    if scene.sweep is None or not scene.sweep.has_rigid_ratio:
         return
     if not ("young_m" in given or "young_m" in wrong or incomplete):
         yield _required("cell.young_m", "young_m", "beside the modulus ratio rigid")

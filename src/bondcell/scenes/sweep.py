@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import prod
+from math import inf, prod
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -31,12 +31,10 @@ from bondcell.scenes.fields import (
     whole_number_between,
 )
 from bondcell.scenes.quantities import NotAllowed
+from bondcell.scenes.spread import check_apart, spread
 
 MOST_POINTS = 10_000_000
 """Largest number of points in a sweep."""
-
-FINEST_STEP = 1e-14
-"""Smallest step of a range, relative to its larger end: finer ones drown in round-off."""
 
 DERIVED = {"modulus_ratio": "young_m", "gap_ratio": "gap", "radius_ratio": "radius_j"}
 """Axes that are ratios -> the input each of them sets."""
@@ -72,18 +70,12 @@ class Range(Block):
             raise NotAllowed("a stop that differs from start; for one value write a list")
         if self.spacing == "log" and not (self.start > 0 and self.stop > 0):
             raise NotAllowed("start and stop above 0 where spacing is log")
-        widest = max(abs(self.start), abs(self.stop))
-        if abs(self.stop - self.start) / widest < FINEST_STEP * self.points:
-            raise NotAllowed("points that differ; start and stop are too close for so many")
+        check_apart(self.start, self.stop, self.points)
         return self
 
     def values(self) -> FloatArray:
-        """The values, on decimal grids free of round-off: 0.3, not 0.30000000000000004."""
-        spread = np.linspace if self.spacing == "lin" else np.geomspace
-        raw = spread(self.start, self.stop, self.points)
-        values = np.fromiter((float(f"{value:.15g}") for value in raw), np.float64, self.points)
-        values[[0, -1]] = self.start, self.stop
-        return values
+        """The values, the ends included; read-only."""
+        return spread(self.start, self.stop, self.points, self.spacing)
 
 
 class LengthRange(Range):
@@ -208,6 +200,12 @@ class Sweep(Block):
         """Number of combinations of the axes' values."""
         axes = (getattr(self, name) for name in self._order)
         return prod(axis.points if isinstance(axis, Range) else len(axis) for axis in axes)
+
+    @property
+    def has_rigid_ratio(self) -> bool:
+        """Whether a modulus ratio is infinite, which a range cannot say."""
+        axis = self.modulus_ratio
+        return isinstance(axis, tuple) and inf in axis
 
     def _values(self, name: str) -> FloatArray:
         axis = getattr(self, name)

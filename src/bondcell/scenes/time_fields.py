@@ -6,12 +6,12 @@ import re
 from functools import partial
 from typing import Annotated, Any, Literal, Self
 
-import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from bondcell.cell import FloatArray
 from bondcell.scenes.fields import POSITIVE, Block, quantity_schema, whole_number_between
 from bondcell.scenes.quantities import EXAMPLES, NUMBER, NotAllowed, describe, parse_quantity
+from bondcell.scenes.spread import check_apart, spread
 
 TIMES = (1e-30, 1e30)
 """Range of times [s]."""
@@ -132,12 +132,12 @@ class TimeSpan(Block):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        _check_ascending(self.start, self.stop)
+        _check_ascending(self.start, self.stop, self.points)
         return self
 
     def values(self) -> FloatArray:
         """The values, ascending."""
-        return _spread(self.start, self.stop, self.points)
+        return spread(self.start, self.stop, self.points, "log")
 
 
 class FrequencySpan(Block):
@@ -151,21 +151,15 @@ class FrequencySpan(Block):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        _check_ascending(self.start, self.stop)
+        _check_ascending(self.start, self.stop, self.points)
         return self
 
     def values(self) -> FloatArray:
         """The values, ascending."""
-        return _spread(self.start, self.stop, self.points)
+        return spread(self.start, self.stop, self.points, "log")
 
 
-def _check_ascending(start: float, stop: float) -> None:
+def _check_ascending(start: float, stop: float, points: int) -> None:
     if not start < stop:
         raise NotAllowed("a stop above start")
-
-
-def _spread(start: float, stop: float, points: int) -> FloatArray:
-    raw = np.geomspace(start, stop, points)
-    values = np.array([float(f"{value:.15g}") for value in raw])
-    values[[0, -1]] = start, stop
-    return values
+    check_apart(start, stop, points)

@@ -14,9 +14,6 @@ from bondcell.scenes.quantities import NotAllowed
 
 KeyPath = tuple[str | int, ...]
 
-LONGEST_VALUE = 80
-"""Longest value shown in full, in characters."""
-
 _PLAIN = {
     "model_type": "a mapping of keys to values",
     "model_attributes_type": "a mapping of keys to values",
@@ -44,26 +41,21 @@ def found_violations(
     """
     for record in error.errors(include_url=False):
         path = _plain_path(record["loc"])
-        value = None if record["type"] == "missing" else shortened(record["input"])
+        value = None if record["type"] == "missing" else record["input"]
         allowed = _allowed(record, path, known_keys)
         yield path, Violation(dotted(path), value, allowed)
 
 
 def dotted(path: KeyPath) -> str:
-    """Write a path with dots; the file itself is ``scene``.
+    """Write a path with dots; the file itself is ``scene``, a key with a dot is quoted.
 
     Examples
     --------
-    >>> dotted(("sweep", "gap", 2))
-    'sweep.gap.2'
+    >>> dotted(("sweep", "gap", 2)), dotted(("cell.gap",))
+    ('sweep.gap.2', "'cell.gap'")
     """
-    return ".".join(str(part) for part in path) or "scene"
-
-
-def shortened(value: Any) -> Any:
-    """Keep a value as it is, or cut its representation if that is long."""
-    text = repr(value)
-    return value if len(text) <= LONGEST_VALUE else text[: LONGEST_VALUE - 3] + "..."
+    words = (str(part) for part in path)
+    return ".".join(repr(word) if "." in word else word for word in words) or "scene"
 
 
 def null_violations(data: Any, path: KeyPath = ()) -> Iterator[tuple[KeyPath, Violation]]:
@@ -94,7 +86,7 @@ def as_given(violation: Violation, data: Any) -> Violation:
     raw = data
     for key in violation.field.split("."):
         raw = raw.get(key) if isinstance(raw, Mapping) else None
-    return replace(violation, value=shortened(raw)) if isinstance(raw, str) else violation
+    return replace(violation, value=raw) if isinstance(raw, str) else violation
 
 
 def _plain_path(location: KeyPath) -> KeyPath:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -9,15 +10,18 @@ from typing import Any
 import yaml
 
 from bondcell.errors import InputError, Violation
+from bondcell.scenes.yaml_structure import (
+    CORE,
+    MOST_LEVELS,
+    TOO_DEEP,
+    TYPES,
+    Unreadable,
+    kind_of,
+    structure_violations,
+)
 
 LARGEST_FILE = 256_000
 """Largest file that is read, in bytes."""
-
-MOST_NODES = 100_000
-"""Most values a file may hold once its aliases are written out."""
-
-MOST_LEVELS = 20
-"""Deepest nesting of a file."""
 
 
 def load_mapping(path: str | Path, error: type[InputError] = InputError) -> dict[str, Any]:
@@ -44,39 +48,38 @@ def load_mapping(path: str | Path, error: type[InputError] = InputError) -> dict
     Notes
     -----
     Plain scalars follow the core schema of YAML 1.2, which editors check against: ``1e-3`` is a
-    number, ``010`` is ten, ``1:30`` and ``yes`` are text.
+    number, ``010`` is ten, ``1:30`` and ``yes`` are text. So is ``1e500``, which no double holds.
     """
     try:
         node = _compose(_read(Path(path)))
         if not isinstance(node, yaml.MappingNode):
-            kind = "empty" if node is None or node.tag == _NULL else f"one {_kind(node)}"
-            raise _Unreadable(kind, "a mapping of keys to values")
-        violations = _structure_violations(node)
+            kind = "empty" if node is None or node.tag == _NULL else f"one {kind_of(node)}"
+            raise Unreadable(kind, "a mapping of keys to values")
+        violations = structure_violations(node)
         if not violations:
             return dict(_construct(node))
-    except _Unreadable as unreadable:
+    except Unreadable as unreadable:
         violations = [Violation("file", unreadable.found, unreadable.allowed)]
     raise error(violations, source=str(path))
 
 
-class _Unreadable(Exception):
-    def __init__(self, found: str, allowed: str) -> None:
-        self.found = found
-        self.allowed = allowed
-        super().__init__(found)
-
-
 class _CoreLoader(yaml.SafeLoader):
-    """Safe loader that resolves plain scalars as YAML 1.2 does."""
+    """Safe loader that resolves plain scalars as YAML 1.2 does and nests only so deep."""
 
     yaml_implicit_resolvers: dict[str, Any] = {}  # noqa: RUF012
+    level = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        """Compose a node and all that is in it."""
+        if self.level > MOST_LEVELS:
+            raise Unreadable(*TOO_DEEP)
+        self.level += 1
+        node = super().compose_node(parent, index)
+        self.level -= 1
+        return node
 
 
-_CORE = "tag:yaml.org,2002:"
-_NULL, _BOOL, _INT, _FLOAT, _STR, _SEQ, _MAP = (
-    _CORE + name for name in ("null", "bool", "int", "float", "str", "seq", "map")
-)
-_TYPES = "mappings, lists, text, numbers, true and false"
+_NULL, _BOOL, _INT, _FLOAT = (CORE + name for name in ("null", "bool", "int", "float"))
 
 _SCALARS = (
     (_NULL, r"~|null|Null|NULL|", ["~", "n", "N", ""]),
@@ -93,13 +96,24 @@ for _tag, _pattern, _first in _SCALARS:
     _CoreLoader.add_implicit_resolver(_tag, re.compile(rf"(?:{_pattern})\Z"), _first)
 
 
-def _construct_int(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int | float:
+def _construct_int(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> int | float | str:
     text = loader.construct_scalar(node)
     # A long run of digits is no count: as a float it needs no big-integer arithmetic.
-    return int(text, 10) if len(text) < 20 else float(text)
+    return int(text, 10) if len(text) < 20 else _finite(text, float(text))
+
+
+def _construct_float(loader: yaml.SafeLoader, node: yaml.ScalarNode) -> float | str:
+    text = loader.construct_scalar(node)
+    return _finite(text, loader.construct_yaml_float(node))
+
+
+def _finite(text: str, number: float) -> float | str:
+    """The number, or its text if only rounding makes it infinite: 1e500 is not rigid."""
+    return text if math.isinf(number) and "inf" not in text.lower() else number
 
 
 _CoreLoader.add_constructor(_INT, _construct_int)
+_CoreLoader.add_constructor(_FLOAT, _construct_float)
 
 
 def _read(path: Path) -> bytes:
@@ -107,11 +121,11 @@ def _read(path: Path) -> bytes:
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
     except FileNotFoundError:
-        raise _Unreadable("absent", "an existing file") from None
+        raise Unreadable("absent", "an existing file") from None
     except OSError as error:
-        raise _Unreadable(error.strerror or str(error), "a readable file") from None
+        raise Unreadable(error.strerror or str(error), "a readable file") from None
     if len(content) > LARGEST_FILE:
-        raise _Unreadable("too large", f"at most {LARGEST_FILE} bytes")
+        raise Unreadable("too large", f"at most {LARGEST_FILE} bytes")
     return content
 
 
@@ -122,11 +136,9 @@ def _compose(content: bytes) -> yaml.Node | None:
         return loader.get_single_node()
     except yaml.reader.ReaderError as error:
         problem = f"byte {error.position}: {error.reason}"
-        raise _Unreadable("not text", f"UTF-8 text ({problem})") from None
+        raise Unreadable("not text", f"UTF-8 text ({problem})") from None
     except yaml.MarkedYAMLError as error:
-        raise _Unreadable(_where(error), "valid YAML; is the file complete?") from None
-    except RecursionError:
-        raise _Unreadable("nested too deeply", f"at most {MOST_LEVELS} levels") from None
+        raise Unreadable(_where(error), "valid YAML; is the file complete?") from None
     finally:
         if loader is not None:
             loader.dispose()
@@ -143,59 +155,8 @@ def _construct(node: yaml.MappingNode) -> Any:
     try:
         return loader.construct_document(node)
     except yaml.MarkedYAMLError as error:
-        raise _Unreadable(_where(error), _TYPES) from None
+        raise Unreadable(_where(error), TYPES) from None
     except (ValueError, LookupError) as error:
-        raise _Unreadable(f"a tag that does not fit its value ({error})", _TYPES) from None
+        raise Unreadable(f"a tag that does not fit its value ({error})", TYPES) from None
     finally:
         loader.dispose()
-
-
-def _structure_violations(root: yaml.Node) -> list[Violation]:
-    """Repeated keys, keys that are no text, aliases that blow up."""
-    violations: list[Violation] = []
-    sizes: dict[int, int] = {}
-
-    def visit(node: yaml.Node, path: str, level: int = 0) -> int:
-        if level > MOST_LEVELS:
-            raise _Unreadable("nested too deeply", f"at most {MOST_LEVELS} levels")
-        # A node met again is an alias: counted as if written out, looked at once.
-        if id(node) in sizes:
-            return sizes[id(node)]
-        sizes[id(node)] = MOST_NODES + 1  # stands while the node is open: an alias into itself
-        if node.tag not in (_NULL, _BOOL, _INT, _FLOAT, _STR, _SEQ, _MAP):
-            violations.append(Violation(path, node.tag.removeprefix(_CORE), f"{_TYPES}, no tag"))
-        size = 1
-        if isinstance(node, yaml.MappingNode):
-            seen: set[str] = set()
-            for key, value in node.value:
-                name = _key(key, path, seen, violations)
-                size += visit(value, f"{path}.{name}" if path else name, level + 1)
-        elif isinstance(node, yaml.SequenceNode):
-            items = enumerate(node.value)
-            size += sum(visit(item, f"{path}.{i}", level + 1) for i, item in items)
-        sizes[id(node)] = size
-        return size
-
-    if visit(root, "") > MOST_NODES:
-        raise _Unreadable("too many values", f"at most {MOST_NODES} values, aliases written out")
-    return violations
-
-
-def _key(key: yaml.Node, path: str, seen: set[str], violations: list[Violation]) -> str:
-    name = str(key.value) if isinstance(key, yaml.ScalarNode) else _kind(key)
-    if not name.isprintable():
-        name = ascii(name)
-    field = f"{path}.{name}" if path else name
-    line = f"line {key.start_mark.line + 1}"
-    if not isinstance(key, yaml.ScalarNode) or key.tag != _STR:
-        violations.append(Violation(field, name, f"a key that is a word ({line})"))
-    elif name in seen:
-        violations.append(Violation(field, name, f"each key once; it stands again in {line}"))
-    seen.add(name)
-    return name
-
-
-def _kind(node: yaml.Node) -> str:
-    if isinstance(node, yaml.SequenceNode):
-        return "list"
-    return "mapping" if isinstance(node, yaml.MappingNode) else "value"
