@@ -8,6 +8,7 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -127,17 +128,25 @@ class Workspace:
 
     def plans(self, edits: dict[str, tuple[str, str, str]]) -> dict[str, dict[str, int]]:
         """Name of an edit -> rules that it would make run, and how often."""
+        outputs = self._dry("plans.py", edits)
+        return {name: planned_rules(text) for name, text in outputs.items()}
+
+    def dry_runs(self, targets: list[str]) -> dict[str, str]:
+        """Target -> what a dry run prints, its exit status at the end."""
+        return self._dry("dry_runs.py", targets)
+
+    def _dry(self, program: str, asked: Any) -> dict[str, str]:
         done = subprocess.run(
-            [sys.executable, Path(__file__).with_name("plans.py")],
+            [sys.executable, Path(__file__).with_name(program)],
             cwd=self.folder,
             env=self.environment,
-            input=json.dumps(edits),
+            input=json.dumps(asked),
             capture_output=True,
             text=True,
             check=False,
         )
         assert done.returncode == 0, done.stderr
-        return {name: planned_rules(text) for name, text in json.loads(done.stdout).items()}
+        return json.loads(done.stdout)
 
 
 def planned_rules(output: str) -> dict[str, int]:

@@ -13,12 +13,12 @@ from pathlib import Path
 from snakemake.cli import main
 
 
-def plan() -> str:
-    """Output of a dry run."""
+def plan(*targets: str) -> str:
+    """Output of a dry run, of the default target without another."""
     output = io.StringIO()
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
         try:
-            main(["--dry-run", "--cores", "2"])
+            main(["--dry-run", "--cores", "2", *targets])
         except SystemExit as done:
             print(f"exit status {done.code}")
     return output.getvalue()
