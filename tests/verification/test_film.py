@@ -5,8 +5,9 @@ import pytest
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem import reference
-from bondcell.models import MODELS, film, film_domain
+from bondcell.models import MODELS
 from bondcell.models.asked import ask
+from bondcell.models.film import domain, loads
 from bondcell.status import Status
 
 BASE = {"radius_i": 1.0, "young_m": 1.0, "poisson_i": 0.25}
@@ -81,11 +82,11 @@ class TestAccuracy:
         """The claimed error holds against a rule of twice as many points each way."""
         cell, other = equal_pairs(12, seed=13), unequal_pairs(6, seed=14)
         usual = [stiffness(one) for one in (cell, other)]
-        monkeypatch.setattr(film_domain, "RADIAL_POINTS", 10)
-        monkeypatch.setattr(film_domain, "AXIAL_POINTS", 12)
-        monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
+        monkeypatch.setattr(domain, "RADIAL_POINTS", 10)
+        monkeypatch.setattr(domain, "AXIAL_POINTS", 12)
+        monkeypatch.setattr(domain, "OUTER_PANELS", 6)
         for value, one in zip(usual, (cell, other), strict=True):
-            assert value == pytest.approx(stiffness(one), rel=film.RELATIVE_ERROR)
+            assert value == pytest.approx(stiffness(one), rel=loads.RELATIVE_ERROR)
 
 
 class TestLimits:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from bondcell.models import film_particles
-from bondcell.models.film_domain import Geometry, domain
-from bondcell.models.film_fields import fields
-from bondcell.models.film_particles import COUNT, SOURCES, Traces, distances, energy, traces
+from bondcell.models.film import particles
+from bondcell.models.film.domain import Geometry, domain
+from bondcell.models.film.fields import fields
+from bondcell.models.film.particles import COUNT, SOURCES, Traces, distances, energy, traces
 
 RADIUS, POISSON = np.array([[0.8]]), np.array([[0.3]])
 FAR = np.geomspace(0.05, 0.8, SOURCES).reshape(-1, 1, 1)
@@ -14,7 +14,7 @@ FAR = np.geomspace(0.05, 0.8, SOURCES).reshape(-1, 1, 1)
 
 def at(r: float, z: float) -> list[np.ndarray]:
     """The particle's fields at one point, (quantity, field)."""
-    groups = film_particles._fields(np.array([[r]]), np.array([[z]]), RADIUS + FAR, POISSON)
+    groups = particles._fields(np.array([[r]]), np.array([[z]]), RADIUS + FAR, POISSON)
     rows = [np.concatenate([np.ravel(group[k]) for group in groups]) for k in range(5)]
     assert rows[0].size == COUNT
     return rows

@@ -5,10 +5,11 @@ import pytest
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem import reference
-from bondcell.models import MODELS, film_domain, film_lateral
+from bondcell.models import MODELS
 from bondcell.models.asked import ask
-from bondcell.models.film import RELATIVE_ERROR
-from bondcell.models.film_lateral import Field, strains, stream_strains
+from bondcell.models.film import domain, lateral_particles
+from bondcell.models.film.loads import RELATIVE_ERROR
+from bondcell.models.film.one_wave import Field, strains, stream_strains
 from bondcell.models.jets import Jet
 from bondcell.status import Status
 
@@ -100,9 +101,9 @@ class TestLaws:
     def test_quadrature(self, load: str, monkeypatch: pytest.MonkeyPatch) -> None:
         cell = cells(gap=[1e-3, 0.3], radius_j=[1.0, 0.5], young_i=1e3, poisson_m=0.4)
         usual = stiffness(cell, load)
-        monkeypatch.setattr(film_domain, "RADIAL_POINTS", 10)
-        monkeypatch.setattr(film_domain, "AXIAL_POINTS", 10)
-        monkeypatch.setattr(film_lateral, "DEPTH_POINTS", 12)
+        monkeypatch.setattr(domain, "RADIAL_POINTS", 10)
+        monkeypatch.setattr(domain, "AXIAL_POINTS", 10)
+        monkeypatch.setattr(lateral_particles, "DEPTH_POINTS", 12)
         assert usual == pytest.approx(stiffness(cell, load), rel=RELATIVE_ERROR)
 
     def test_flags(self, load: str) -> None:

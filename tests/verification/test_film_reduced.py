@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models import MODELS, film_reduced
-from bondcell.models.film import RELATIVE_ERROR
-from bondcell.models.film_reduced import MANY, TOLERANCE, least_energies_of_many
-from bondcell.models.film_solve import least_energies
+from bondcell.models import MODELS
+from bondcell.models.film import reduced
+from bondcell.models.film.loads import RELATIVE_ERROR
+from bondcell.models.film.reduced import MANY, TOLERANCE, least_energies_of_many
+from bondcell.models.film.solve import least_energies
 
 LOADS = ("normal", "shear", "torsion", "bending")
 
@@ -61,7 +62,7 @@ def test_bound_of_the_loss() -> None:
     """A basis of few solutions: what it loses is below its bound, and not nothing."""
     own, draw = forms(24, seed=1), np.random.default_rng(2).uniform
     factors = 10 ** draw(-1, 3, (40, 3))
-    basis = film_reduced.Basis(own)
+    basis = reduced.Basis(own)
     basis.add(factors[:4])
     value, bound = basis.energies(factors)
     loss = value - least_energies(own, factors)
@@ -82,7 +83,7 @@ def test_one_material_many_times() -> None:
 
 def test_what_no_basis_holds_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     """With no room in the basis most points are solved by themselves."""
-    monkeypatch.setattr(film_reduced, "LARGEST", film_reduced.START + film_reduced.STEP - 1)
+    monkeypatch.setattr(reduced, "LARGEST", reduced.START + reduced.STEP - 1)
     own, draw = forms(40, seed=4), np.random.default_rng(5).uniform
     factors = 10 ** draw(-2, 2, (MANY, 3))
     value, bound = least_energies_of_many(own, factors)

@@ -5,9 +5,10 @@ import pytest
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem import reference
-from bondcell.models import MODELS, film_domain, film_stress, film_stress_torsion
-from bondcell.models.film_domain import Geometry
-from bondcell.models.film_stress import RELATIVE_ERROR, stresses
+from bondcell.models import MODELS
+from bondcell.models.film import domain, stress, stress_torsion
+from bondcell.models.film.domain import Geometry
+from bondcell.models.film.stress import RELATIVE_ERROR, stresses
 from bondcell.models.jets import Jet
 
 GEOMETRY = Geometry(*(np.array([[x]]) for x in (1.0, 0.6, 0.1, 1.4)), mirrored=False)
@@ -45,7 +46,7 @@ def sphere_traces(radius: float, angle: FloatArray, outside: bool) -> FloatArray
     fade = square * 0.0 + 1.0 if outside else square * square * (3.0 - 2.0 * square)
     if outside:
         fade = fade - phi * phi * 3.0
-    return film_stress._traces(r, z, phi, fade, np.array([[radius]]), GEOMETRY)
+    return stress._traces(r, z, phi, fade, np.array([[radius]]), GEOMETRY)
 
 
 @pytest.mark.parametrize("radius", [1.0, 0.6])
@@ -69,8 +70,8 @@ def test_plates_have_no_friction_and_sides_are_free() -> None:
     phi = (square - 1.0) * 0.5
     fade = square * square * (3.0 - 2.0 * square)
     for trial in (
-        film_stress._traces(x, z, phi, fade, one, GEOMETRY),
-        film_stress._lines(x, GEOMETRY),
+        stress._traces(x, z, phi, fade, one, GEOMETRY),
+        stress._lines(x, GEOMETRY),
     ):
         assert trial[3] == pytest.approx(np.zeros(trial[3].shape), abs=1e-12)
         assert trial[0, ..., -1] == pytest.approx(np.zeros(trial.shape[1:3]), abs=1e-12)
@@ -80,7 +81,7 @@ def test_the_first_stress_carries_a_unit_force() -> None:
     node, weight = np.polynomial.legendre.leggauss(40)
     r = (1.4 * (node + 1) / 2)[None]
     x, _ = Jet.variables(r, np.zeros_like(r))
-    axial = film_stress._lines(x, GEOMETRY)[2]
+    axial = stress._lines(x, GEOMETRY)[2]
     force = (axial * 2 * np.pi * r * weight * 0.7).sum(axis=-1)[:, 0]
     assert force[0] == pytest.approx(1.0, rel=1e-12)
     assert force[1:] == pytest.approx(np.zeros(force.size - 1), abs=1e-9)
@@ -165,9 +166,9 @@ def test_quadrature(monkeypatch: pytest.MonkeyPatch) -> None:
     """The claimed error holds against a rule of more points each way."""
     cells = (equal_pairs(5, seed=43), unequal_pairs(3, seed=44))
     usual = [bounds(cell)[0] for cell in cells]
-    monkeypatch.setattr(film_stress, "MATRIX_POINTS", (14, 13))
-    monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
-    monkeypatch.setattr(film_stress, "DEPTH_POINTS", 16)
+    monkeypatch.setattr(stress, "MATRIX_POINTS", (14, 13))
+    monkeypatch.setattr(domain, "OUTER_PANELS", 6)
+    monkeypatch.setattr(stress, "DEPTH_POINTS", 16)
     for value, cell in zip(usual, cells, strict=True):
         assert value == pytest.approx(bounds(cell)[0], rel=RELATIVE_ERROR)
 
@@ -246,7 +247,7 @@ class TestTorsion:
 
         def at(r: float, z: float) -> FloatArray:
             x, y = Jet.variables(np.array([r]), np.array([z]))
-            return film_stress_torsion._shear((x * x + y).log() * y, x.value)[:, 0]
+            return stress_torsion._shear((x * x + y).log() * y, x.value)[:, 0]
 
         r, z, step = 0.7, 0.4, 1e-5
         by_r = (at(r + step, z) - at(r - step, z)) / (2 * step)
@@ -273,8 +274,8 @@ class TestTorsion:
     def test_quadrature(self, monkeypatch: pytest.MonkeyPatch) -> None:
         cells = (equal_pairs(4, seed=47), unequal_pairs(3, seed=48))
         usual = [bounds(cell, "torsion")[0] for cell in cells]
-        monkeypatch.setattr(film_stress_torsion, "MATRIX_POINTS", (14, 13))
-        monkeypatch.setattr(film_domain, "OUTER_PANELS", 6)
-        monkeypatch.setattr(film_stress, "DEPTH_POINTS", 16)
+        monkeypatch.setattr(stress_torsion, "MATRIX_POINTS", (14, 13))
+        monkeypatch.setattr(domain, "OUTER_PANELS", 6)
+        monkeypatch.setattr(stress, "DEPTH_POINTS", 16)
         for value, cell in zip(usual, cells, strict=True):
             assert value == pytest.approx(bounds(cell, "torsion")[0], rel=RELATIVE_ERROR)

@@ -7,7 +7,8 @@ from collections.abc import Callable
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models import film, film_stress, film_stress_torsion, generatrix
+from bondcell.models import generatrix
+from bondcell.models.film import loads, ranges, stress, stress_torsion
 from bondcell.models.model import Model, Springs
 
 
@@ -27,11 +28,12 @@ def normal(cell: Cell) -> Springs:
 
     Notes
     -----
-    Lower: the stresses of `film_stress`, and those of the generatrix lines, balance themselves
+    Lower: the stresses of `film.stress`, and those of the generatrix lines, balance themselves
     and leave the sides free, so their complementary energies bound the compliance from above; the
-    better of both counts, generatrix alone for gaps above `film.LONGEST` radii. Upper: the trial
-    displacements of the film model are continuous and keep the plates plane, so their energy
-    bounds the stiffness from above at any Poisson's ratio, 1/2 included. Both are widened by their
+    better of both counts, generatrix alone for gaps that are not `ranges.is_short`. Upper: the
+    trial displacements of the film model are continuous and keep the plates plane, so their energy
+    bounds the stiffness from above at any Poisson's ratio, 1/2 included: solved for every cell,
+    never interpolated between cells. Both are widened by their
     numerical error.
 
     Examples
@@ -47,31 +49,31 @@ def normal(cell: Cell) -> Springs:
     >>> {name: float(part.round(-1)) for name, part in normal(cell).parts.items()}
     {'lower': 87190.0, 'upper': 87250.0}
     """
-    return _between(cell, generatrix.normal(cell), film_stress.stiffness, film.normal(cell), 1)
+    return _between(cell, generatrix.normal(cell), stress.stiffness, loads.normal(cell), 1)
 
 
 def torsion(cell: Cell) -> Springs:
     """Interval that holds the stiffness against torsion, as `normal` does for the normal load."""
-    stress = film_stress_torsion.stiffness
-    return _between(cell, generatrix.torsion(cell), stress, film.torsion(cell), 3)
+    below = stress_torsion.stiffness
+    return _between(cell, generatrix.torsion(cell), below, loads.torsion(cell), 3)
 
 
 def _between(
     cell: Cell,
     lines: Springs,
-    stress: Callable[[Cell, FloatArray], FloatArray],
+    trial: Callable[[Cell, FloatArray], FloatArray],
     above: Springs,
     power: int,
 ) -> Springs:
     """The interval; a stiffness of trial stresses is over ``E_m`` and a power of the radius."""
     lower = np.array(lines.stiffness * (1 - lines.relative_error)).ravel()
     flat = cell.ravel()
-    short = np.flatnonzero(flat.gap <= film.LONGEST * flat.cylinder_radius)
+    short = np.flatnonzero(ranges.is_short(flat))
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)
-        found = stress(own, own.gap / scale) * own.young_m * scale**power
-        lower[short] = np.maximum(lower[short], found * (1 - film_stress.RELATIVE_ERROR))
+        found = trial(own, own.gap / scale) * own.young_m * scale**power
+        lower[short] = np.maximum(lower[short], found * (1 - stress.RELATIVE_ERROR))
     lower = lower.reshape(cell.shape)
     upper = above.stiffness * (1 + above.relative_error)
     middle = (lower + upper) / 2
@@ -87,5 +89,5 @@ BOUNDS = Model(
     valid_range="The interval holds wherever the film model is resolved; as an estimate its "
     "middle is off by up to half the interval, which is reported as the error.",
     loads={"normal": normal, "torsion": torsion},
-    is_valid=film.is_resolved,
+    is_valid=ranges.is_resolved,
 )

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bondcell.cell import FloatArray
-from bondcell.models.film_domain import Domain, Geometry
-from bondcell.models.film_particles import Traces
+from bondcell.models.film.domain import Domain, Geometry
+from bondcell.models.film.particles import Traces
 from bondcell.models.jets import Curve, Jet
 
 ODD = {"stream": {1: 8, 3: 4}, "radial": {0: 8, 2: 3}, "axial": {1: 6, 3: 2}}

@@ -14,10 +14,10 @@ from __future__ import annotations
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models.film_domain import Domain, Geometry, domain, gauss, graded_angles
-from bondcell.models.film_energies import gram, minimum, sum_of_grams
-from bondcell.models.film_fields import film_coordinate, legendre
-from bondcell.models.film_reduced import least_energies_of_many
+from bondcell.models.film.domain import Domain, Geometry, domain, gauss, graded_angles
+from bondcell.models.film.energies import gram, minimum, sum_of_grams
+from bondcell.models.film.fields import film_coordinate, legendre
+from bondcell.models.film.reduced import least_energies_of_many
 from bondcell.models.jets import Jet
 
 LINES = 12

@@ -10,11 +10,11 @@ from __future__ import annotations
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models.film_domain import Geometry, domain
-from bondcell.models.film_energies import minimum, sum_of_grams
-from bondcell.models.film_fields import film_coordinate, legendre
-from bondcell.models.film_reduced import least_energies_of_many
-from bondcell.models.film_stress import (
+from bondcell.models.film.domain import Geometry, domain
+from bondcell.models.film.energies import minimum, sum_of_grams
+from bondcell.models.film.fields import film_coordinate, legendre
+from bondcell.models.film.reduced import least_energies_of_many
+from bondcell.models.film.stress import (
     BATCH,
     EVEN,
     LAYERS,
@@ -75,7 +75,7 @@ def complementary(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArr
     -------
     ndarray
         Of the matrix for unit ``1/mu``, of particle i and of particle j for unit Young's modulus;
-        shape (3, cells, stresses, stresses). The functions q are those of `film_stress`.
+        shape (3, cells, stresses, stresses). The functions q are those of `stress`.
     """
     space = domain(geometry, MATRIX_POINTS)
     s = space.above_i / (space.above_i + space.above_j)

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.models.film_domain import Geometry, panel_count
-from bondcell.models.film_reduced import least_energies_of_many
-from bondcell.models.film_solve import least_energies
+from bondcell.models.film.domain import Geometry, panel_count
+from bondcell.models.film.reduced import least_energies_of_many
+from bondcell.models.film.solve import least_energies
 
 BATCH = 16
 """Geometries assembled at once, to stay in the cache."""

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.linalg import lapack
 
 from bondcell.cell import FloatArray
-from bondcell.models.film_solve import RIDGE, Solved, combined, least_energies, solved
+from bondcell.models.film.solve import RIDGE, Solved, combined, least_energies, solved
 
 TOLERANCE = 1e-5
 """Largest loss that is accepted, relative; it is part of the model's error estimate."""

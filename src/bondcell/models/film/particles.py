@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bondcell.cell import FloatArray
-from bondcell.models.film_domain import gauss, graded_angles
+from bondcell.models.film.domain import gauss, graded_angles
 from bondcell.models.jets import Curve
 
 SOURCES = 5

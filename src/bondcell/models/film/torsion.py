@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from bondcell.cell import FloatArray
-from bondcell.models.film_domain import Domain, Geometry, domain, gauss, graded_angles
-from bondcell.models.film_energies import Energies, gram, placed
-from bondcell.models.film_fields import film_coordinate, legendre
-from bondcell.models.film_particles import SOURCES, SURFACE_POINTS, distances
+from bondcell.models.film.domain import Domain, Geometry, domain, gauss, graded_angles
+from bondcell.models.film.energies import Energies, gram, placed
+from bondcell.models.film.fields import film_coordinate, legendre
+from bondcell.models.film.particles import SOURCES, SURFACE_POINTS, distances
 from bondcell.models.jets import Curve, Jet
 
 COUNT = 1 + SOURCES

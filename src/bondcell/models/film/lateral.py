@@ -1,0 +1,147 @@
+"""Shear and bending: trial displacements of matrix and particles with one wave around the axis.
+
+Both end planes are held, so no field but the lift is other than zero there. Fields are written as
+in `one_wave`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bondcell.cell import FloatArray
+from bondcell.models.film.domain import Domain, Geometry, domain
+from bondcell.models.film.energies import Energies, placed
+from bondcell.models.film.fields import film_coordinate, legendre
+from bondcell.models.film.lateral_particles import distances, energy, particle_fields
+from bondcell.models.film.one_wave import Field, quadratic_forms, strains, stream_strains
+from bondcell.models.jets import Jet
+
+FAMILIES = {
+    "stream": {0: 5, 1: 5, 2: 2, 3: 2},
+    "swirl": {0: 4, 1: 4},
+    "alpha": {0: 5, 1: 5, 2: 2},
+    "beta": {0: 6, 1: 6, 2: 3, 3: 3},
+    "omega": {0: 6, 1: 6, 2: 3, 3: 3},
+}
+"""Family -> power of ``1 - 2 s`` -> number of radial functions."""
+
+FLOWS = 5
+"""Widths of the flows across the film."""
+
+
+def shear_energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -> Energies:
+    """Quadratic forms with a lift that moves particle j and its plane across the axis."""
+    space = domain(geometry)
+    s = _fraction(space)
+    step = s * s * (3.0 - 2.0 * s)
+    middle = geometry.radius_i + geometry.gap / 2
+    q = (middle - space.z) * step
+    return _energies(geometry, space, s, q, Field(None, s, None), (poisson_i, poisson_j))
+
+
+def bending_energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -> Energies:
+    """Quadratic forms with a lift that turns particle j and its plane about the plane's centre."""
+    space = domain(geometry)
+    s = _fraction(space)
+    step = s * s * (3.0 - 2.0 * s)
+    q = -(space.beside_j * geometry.radius_j * step)
+    lift = Field(None, -(space.height * s), -s)
+    return _energies(geometry, space, s, q, lift, (poisson_i, poisson_j))
+
+
+def _fraction(space: Domain) -> Jet:
+    return space.above_i / (space.above_i + space.above_j)
+
+
+def _energies(
+    geometry: Geometry,
+    space: Domain,
+    s: Jet,
+    stream: Jet,
+    simple: Field,
+    poisson: Sequence[FloatArray],
+) -> Energies:
+    r = space.r.value
+    lift = stream_strains(stream, None, r)
+    isochoric, other = _bubbles(space, s)
+    isochoric = np.concatenate([lift[:, None], _flows(space, geometry, s), isochoric], axis=1)
+    sides, blocks = [], []
+    for own, (radius, z, fade) in enumerate(
+        ((geometry.radius_i, space.z, 1.0 - s), (geometry.radius_j, space.height, s))
+    ):
+        far = distances(radius, geometry.film_radius)
+        # Seen from plane j the axis points the other way; only omega turns its sign with it.
+        sign = 1.0 if own == 0 else -1.0
+        across, along, fade = space.r.first_order(), z.first_order(), fade.first_order()
+        shrink = radius * (1.0 / (across * across + along * along).sqrt())
+        local = particle_fields(across * shrink, along * shrink, radius, far, poisson[own])
+        square = shrink * shrink
+        carried = [field.times(fade, alpha=square, omega=shrink * sign) for field in local]
+        sides.append(np.stack([strains(field, r) for field in carried], axis=1))
+        blocks.append(energy(radius, far, poisson[own], geometry.film_radius))
+    trial = np.concatenate([isochoric, (strains(simple, r) - lift)[:, None], other, *sides], axis=1)
+    n = isochoric.shape[1]
+    first = trial.shape[1] - sum(side.shape[1] for side in sides)
+    shear, bulk = quadratic_forms(trial, space.weights / 2, n)
+    moved, particles = placed(blocks, first, False, trial.shape[1])
+    return Energies(shear, bulk, particles, n, moved)
+
+
+def _flows(space: Domain, geometry: Geometry, s: Jet) -> FloatArray:
+    """Strains of fields without divergence that carry the film sideways.
+
+    ``p = S g(r)``, ``q = S k(r)`` move nothing where S is 1 if ``k_r = -(r^4 g)_r/r^2``: ``g = 1``
+    with ``k = -2 r^2``; and for widths c from the film's to the cylinder's ``g = 1/(r^2 + c^2)``,
+    ``k = -r^2 g - ln(r^2 + c^2)`` and ``g = 1/(r^2 + c^2)^2``, ``k = 1/(r^2 + c^2) - r^2 g``.
+    """
+    r, step = space.r.value, s * s * (3.0 - 2.0 * s)
+    square = space.r * space.r
+    strain = [stream_strains(-2.0 * square * step, step, r)]
+    start = np.minimum(0.5 * geometry.film_radius, geometry.outer / 8)
+    for power in np.linspace(0, 1, FLOWS):
+        width = start * (2 * geometry.outer / start) ** power
+        total = square + width**2
+        g = 1.0 / total
+        k = -(square * g) - (total * (1 / width**2)).log()
+        strain.append(stream_strains(k * step, g * step, r))
+        steep = g * g * width**2
+        strain.append(stream_strains((g * width**2 - square * steep) * step, steep * step, r))
+    return np.stack(strain, axis=1)
+
+
+def _bubbles(space: Domain, s: Jet) -> tuple[FloatArray, FloatArray]:
+    """Strains of fields that vanish on both particles: without divergence, and the others."""
+    r, v, thickness = space.r.value, film_coordinate(space), 1.0 / space.span
+    bubble, odd = s * (1.0 - s), 1.0 - 2.0 * s
+    bases = {
+        "stream": bubble * bubble * space.span,
+        "swirl": bubble * bubble,
+        "alpha": bubble * thickness,
+        "beta": bubble,
+        "omega": bubble,
+    }
+    count = max(n for family in FAMILIES.values() for n in family.values())
+    table = legendre(v.value, count)
+    along = v.compose(table.value, table.first, table.second)
+    rows: dict[str, list[FloatArray]] = {name: [] for name in bases}
+    for name, counts in FAMILIES.items():
+        for power, n in counts.items():
+            flows = name in ("stream", "swirl")
+            base = bases[name] if flows else bases[name].first_order()
+            for _ in range(power):
+                base = base * odd
+            field = base * Jet(along.parts[:, :n])
+            rows[name].append(
+                {
+                    "stream": lambda f: stream_strains(f, None, r),
+                    "swirl": lambda f: stream_strains(None, f, r),
+                    "alpha": lambda f: strains(Field(f, None, None), r),
+                    "beta": lambda f: strains(Field(None, f, None), r),
+                    "omega": lambda f: strains(Field(None, None, f), r),
+                }[name](field)
+            )
+    isochoric = np.concatenate([*rows["stream"], *rows["swirl"]], axis=1)
+    other = np.concatenate([*rows["alpha"], *rows["beta"], *rows["omega"]], axis=1)
+    return isochoric, other
