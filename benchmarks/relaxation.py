@@ -15,10 +15,11 @@ from typing import TypeVar
 import numpy as np
 
 from bondcell.cell import Cell
-from bondcell.fem import relaxation_pencil as pencil
-from bondcell.fem.full_system import FullSystem
+from bondcell.fem import relaxing_reference
+from bondcell.fem.full_system import full_systems
 from bondcell.fem.laplace_inversion import invert_reference
 from bondcell.fem.materials import Materials
+from bondcell.fem.one_modulus import reduce_one
 from bondcell.fem.structured import CellSolver, find_load, geometry_of
 from bondcell.fem.threads import one_thread
 from bondcell.fem.time_stepping import graded_times, step_through
@@ -70,20 +71,19 @@ def models() -> None:
         print(f"{name:14}{count:8}{series.count:8}{seconds:10.3f}")
 
 
-def cold(matrix: Relaxing) -> pencil.RelaxingReference:
+def cold(matrix: Relaxing) -> relaxing_reference.RelaxingReference:
     """The series with everything that could be remembered forgotten."""
-    pencil._reduced.cache_clear()
-    pencil._solver.cache_clear()
-    return pencil.relax(matrix)
+    relaxing_reference.forget()
+    return relaxing_reference.relax(matrix)
 
 
 def of_order(matrix: Relaxing, order: int) -> Chain:
     """The exact series of one discretisation, for which stepping is compared with it."""
     solver = CellSolver(geometry_of(matrix.cell), find_load("normal", "roller"), True, order)
-    fit, _ = pencil._fit(
-        lambda x: solver.stiffness(Materials.of(matrix.at(x)).constants(0)), 1e-3, False
+    model = reduce_one(
+        lambda x: solver.stiffness(Materials.of(matrix.at(x)).constants(0)), 1e-3, False, 1e-10
     )
-    return pencil._series(fit, matrix)
+    return model.series(matrix.prony.shear)
 
 
 def row(way: str, steps: int, error: float, seconds: float) -> None:
@@ -104,16 +104,16 @@ def reference() -> None:
     row("K(0) g(t), wrong", 0, float(np.abs(shortcut / exact - 1).max()), 0.0)
     with one_thread():
         series = of_order(matrix, ORDER)
-    system, assembly = measured(lambda: FullSystem.of(matrix.cell, ORDER))
+    systems, assembly = measured(lambda: full_systems(matrix.cell, ORDER))
     few = np.geomspace(1e-8, 1e8, 17)
     for steps in STEPS:
         at = graded_times(few, steps, first=1e-8)
         wanted = np.searchsorted(at, few * (1 - 1e-12))
-        values, seconds = measured(lambda at=at: step_through(matrix, system, at))
+        values, seconds = measured(lambda at=at: step_through(matrix, systems, at))
         error = float(np.abs(values[1 + wanted] / series.relaxation(few) - 1).max())
         row(f"stepping, order {ORDER}, {steps} a decade", at.size, error, seconds + assembly)
     few = np.array([1e-4, 1.0, 1e4])
-    values, seconds = measured(lambda: invert_reference(matrix, system, few))
+    values, seconds = measured(lambda: invert_reference(matrix, systems, few))
     error = float(np.abs(values / series.relaxation(few) - 1).max())
     row(f"Laplace inversion, order {ORDER}, 3 times", 0, error, seconds + assembly)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bondcell.by_geometry import check_options, geometry_groups
 from bondcell.cell import Cell, FloatArray
-from bondcell.errors import InputError, MissingLibrary, Violation
+from bondcell.errors import InputError, MissingLibrary
 from bondcell.models.asked import ask
 from bondcell.models.model import Model
 from bondcell.prony.bond_series import bond_series
@@ -23,7 +23,7 @@ from bondcell.reference_options import DEFAULT_TOLERANCE
 from bondcell.status import Status
 
 if TYPE_CHECKING:
-    from bondcell.fem.relaxation_pencil import RelaxingReference
+    from bondcell.fem.relaxing_reference import RelaxingReference
 
 
 @dataclass(frozen=True)
@@ -108,12 +108,9 @@ def flags_for_all_times(question: Question, answer: Answer) -> NDArray[np.int8]:
 
 def _solve_reference(question: Question) -> Answer:
     """Point by point, geometry by geometry, so that neighbours share their operators."""
-    from bondcell.fem.relaxation_pencil import relax
+    from bondcell.fem.relaxing_reference import relax
 
     matrix = question.matrix
-    if matrix.convention == "separate":
-        allowed = "constant_bulk or constant_poisson for model 'fe'"
-        raise InputError([Violation("convention", "separate", allowed)])
     bc = question.options.get("bc", "roller")
     tolerance = question.options.get("tolerance", DEFAULT_TOLERANCE)
     check_options(question.load, question.options)

@@ -140,8 +140,6 @@ def test_errors_name_field_and_value():
         bondcell.relaxation(study(poisson_m=0.5), bulk, [0.0])
     with pytest.raises(UnsupportedLoad, match="surrogate"):
         bondcell.relaxation(study(), bulk, [0.0], "surrogate")
-    with pytest.raises(bondcell.InputError, match="constant_bulk or constant_poisson"):
-        bondcell.relaxation(study(), bulk, [0.0], "fe")
 
 
 def test_reference_relaxes_between_its_elastic_ends():
@@ -158,17 +156,43 @@ def test_reference_relaxes_between_its_elastic_ends():
     np.testing.assert_allclose(series.K_inf, curve.stiffness[2], rtol=1e-14)
 
 
-def test_a_point_that_fails_costs_itself_only(monkeypatch):
-    from bondcell.fem import relaxation_pencil
+@pytest.mark.parametrize(
+    "table",
+    [
+        "g,k,tau\n0.5,0.2,1e-3\n0.3,0.1,1\n0.15,0,1e3\n",
+        "table,weight,tau\nshear,0.5,1e-3\nshear,0.45,10\nbulk,0.3,5\n",
+    ],
+)
+def test_reference_takes_tables_with_bulk_terms(table, tmp_path):
+    path = tmp_path / "table.csv"
+    path.write_text(table)
+    one, prony = study().isel(gap=[1]), bondcell.read_prony(path)
+    curve = bondcell.relaxation(one, prony, [0.0, 1.0, np.inf], "fe")
+    assert curve.attrs["convention"] == "separate"
+    assert (curve.status == Status.ok).all()
+    assert (curve.error_estimate <= 1e-6).all()
+    share, bulk_share = float(prony.shear.equilibrium), float(prony.bulk.equilibrium)
+    shear, bulk = 1.4e6 / (2 * 1.46) * share, 1.4e6 / (3 * 0.08) * bulk_share
+    young, nu = (
+        9 * bulk * shear / (3 * bulk + shear),
+        (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear)),
+    )
+    for k, elastic in ((0, study()), (2, study(young_m=young, poisson_m=nu))):
+        value = bondcell.evaluate(elastic.isel(gap=[1]), "fe").stiffness
+        np.testing.assert_allclose(curve.stiffness[k], value, rtol=2e-6)
 
-    relax = relaxation_pencil.relax
+
+def test_a_point_that_fails_costs_itself_only(monkeypatch):
+    from bondcell.fem import relaxing_reference
+
+    relax = relaxing_reference.relax
 
     def fails_at_narrow_gaps(matrix, *options):
         if matrix.cell.gap[0] < 2e-4:
             raise np.linalg.LinAlgError("singular")
         return relax(matrix, *options)
 
-    monkeypatch.setattr(relaxation_pencil, "relax", fails_at_narrow_gaps)
+    monkeypatch.setattr(relaxing_reference, "relax", fails_at_narrow_gaps)
     with pytest.warns(RuntimeWarning, match="solver_failed: point 0: LinAlgError: singular"):
         out = bondcell.relaxation(study(), PRONY, [0.0, 1.0], "fe")
     assert (out.status.isel(gap=0) == Status.solver_failed).all()

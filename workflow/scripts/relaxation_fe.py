@@ -1,6 +1,6 @@
 """Relaxation by the finite element reference at the points of one batch."""
 
-import bondcell.fem.relaxation_pencil  # noqa: F401  (an edit of it runs this job again)
+import bondcell.fem.relaxing_reference  # noqa: F401  (an edit of it runs this job again)
 from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.job import job

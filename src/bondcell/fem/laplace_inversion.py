@@ -6,17 +6,18 @@ time step is involved.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse import csc_array
+from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import splu
 
 from bondcell.cell import FloatArray
 from bondcell.fem.full_system import FullSystem
 from bondcell.fem.threads import one_thread
 from bondcell.fem.time_stepping import operators
+from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
 
 NODES = 18
@@ -25,43 +26,52 @@ NODES = 18
 
 @one_thread()
 def invert_reference(
-    matrix: Relaxing, system: FullSystem, times: ArrayLike, nodes: int = NODES
+    matrix: Relaxing, systems: Sequence[FullSystem], times: ArrayLike, nodes: int = NODES
 ) -> FloatArray:
     """Stiffness at a few times, ``nodes`` complex solutions each.
 
     Parameters
     ----------
     matrix
-        One cell and how its matrix relaxes, with ``constant_bulk`` or ``constant_poisson``.
-    system
-        The cell's operators.
+        One cell and how its matrix relaxes.
+    systems
+        What `full_system.full_systems` gave for the cell.
     times
         Positive times [s].
     nodes
         Points of the contour.
     """
-    lasting, relaxing = operators(matrix, system)
-    chain = matrix.prony.shear
+    parts = [(system, *operators(matrix, system)) for system in systems]
 
     def transform(s: complex) -> complex:
-        share = chain.equilibrium + (chain.strengths / (1 + 1 / (s * chain.times))).sum()
-        return stiffness_at(system, lasting, relaxing, complex(share)) / s
+        """The stiffness at a complex Laplace variable over s."""
+        total = 0j
+        for system, lasting, relaxing in parts:
+            soft = [(_share(chain, s), operator) for chain, operator in relaxing]
+            total += stiffness_at(system, lasting, soft)
+        return total / s
 
     return np.array([talbot(transform, float(t), nodes) for t in np.atleast_1d(times)])
 
 
+def _share(chain: Chain, s: complex) -> complex:
+    return complex(chain.equilibrium + (chain.strengths / (1 + 1 / (s * chain.times))).sum())
+
+
 def stiffness_at(
-    system: FullSystem, lasting: csc_array, relaxing: csc_array, share: complex
+    system: FullSystem, lasting: csr_array, relaxing: Sequence[tuple[complex, csr_array]]
 ) -> complex:
-    """Stiffness where the relaxing moduli have a complex share of their values at t = 0."""
+    """Stiffness where relaxing moduli have complex shares of their values at t = 0."""
     free, lift = np.flatnonzero(system.free), system.lift
-    of_lift = lasting @ lift - system.particles @ lift + share * (relaxing @ lift)
-    whole = csc_array((lasting + share * relaxing)[np.ix_(free, free)])
+    soft = lasting.astype(complex)
+    for share, operator in relaxing:
+        soft = soft + share * operator
+    # Particle j moves rigidly in the lift: what its own forces add up to would be round-off.
+    of_lift = soft @ lift
+    inside = csc_array((soft + system.particles)[np.ix_(free, free)])
     beyond: NDArray[np.complex128] = np.zeros(lift.size, dtype=complex)
-    beyond[free] = splu(whole).solve(-of_lift[free])
-    return (
-        complex(lift @ (of_lift + lasting @ beyond + share * (relaxing @ beyond))) * system.factor
-    )
+    beyond[free] = splu(inside).solve(-of_lift[free])
+    return complex(lift @ of_lift + of_lift @ beyond) * system.factor
 
 
 def talbot(transform: Callable[[complex], complex], time: float, nodes: int = NODES) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from statistics import median
 from typing import TYPE_CHECKING, Any
@@ -13,10 +13,10 @@ import xarray as xr
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.errors import BondcellError
-from bondcell.fem.full_system import FullSystem
+from bondcell.fem.full_system import FullSystem, full_systems
 from bondcell.fem.laplace_inversion import invert_reference
 from bondcell.fem.reference import solve
-from bondcell.fem.relaxation_pencil import forget, relax
+from bondcell.fem.relaxing_reference import forget, relax
 from bondcell.fem.time_stepping import graded_times, step_through
 from bondcell.inputs import cell_from_study
 from bondcell.jobs.relaxation_batch import prony_of, relaxing_study
@@ -121,15 +121,15 @@ def _runs(problem: _Problem, steps: tuple[int, ...], nodes: tuple[int, ...]) -> 
         return answer.series.relaxation(wanted), answer.dof
 
     def stepping(density: int) -> tuple[FloatArray, int]:
-        system = FullSystem.of(matrix.cell, problem.order, load, bc)
+        systems = full_systems(matrix.cell, problem.order, load, bc)
         times = graded_times(wanted, density, FIRST_STEP * float(chain.times.min()))
-        values = step_through(matrix, system, times)
+        values = step_through(matrix, systems, times)
         at = np.searchsorted(times, wanted * (1 - 1e-12))
-        return values[1 + at], system.lift.size
+        return values[1 + at], _unknowns(systems)
 
     def inversion(count: int) -> tuple[FloatArray, int]:
-        system = FullSystem.of(matrix.cell, problem.order, load, bc)
-        return invert_reference(matrix, system, wanted, count), system.lift.size
+        systems = full_systems(matrix.cell, problem.order, load, bc)
+        return invert_reference(matrix, systems, wanted, count), _unknowns(systems)
 
     def shortcut() -> tuple[FloatArray, int]:
         options = {"bc": bc} if load == "normal" else {}
@@ -143,6 +143,10 @@ def _runs(problem: _Problem, steps: tuple[int, ...], nodes: tuple[int, ...]) -> 
     for count in nodes:
         yield _Run("laplace_inversion", count, lambda n=count: inversion(n))  # type: ignore[misc]
     yield _Run("shortcut", np.nan, shortcut)
+
+
+def _unknowns(systems: Sequence[FullSystem]) -> int:
+    return sum(int(system.free.sum()) for system in systems)
 
 
 def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:

@@ -17,9 +17,6 @@ if TYPE_CHECKING:
 MOST_VALUES = 50_000_000
 """Most values of K(t) in a scene."""
 
-METHOD_LOADS = ("normal", "torsion")
-"""Loads under which methods in time can be compared."""
-
 
 def prony_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
     """Everything that is wrong between the block and the rest.
@@ -101,9 +98,6 @@ def _method_violations(
             yield Violation(f"prony.methods.series.{i}", name, allowed)
     if scene.reference is None and ("reference",) not in bad:
         yield Violation("prony.methods", None, "beside a reference: they are its methods")
-    if scene.load not in METHOD_LOADS:
-        allowed = f"{' or '.join(METHOD_LOADS)} as the first load, beside prony.methods"
-        yield Violation("load", scene.load, allowed)
     given = {*scene.cell.given()}
     needed = [name for name in scene.swept_inputs if name not in given]
     for name in needed:
