@@ -29,10 +29,12 @@ study: setup ## run the default study to results/report.html
 
 test: lint ## lint, types and all tests but the slow ones
 	@sh scripts/system_deps.sh --optional
+	@sh scripts/browser.sh
 	$(RUN) pytest $(PARALLEL) -m "not slow"
 
 test-all: lint ## lint, types and every test
 	@sh scripts/system_deps.sh --optional
+	@sh scripts/browser.sh
 	$(RUN) pytest $(PARALLEL)
 
 lint: setup ## ruff, snakefmt and mypy, nothing is changed

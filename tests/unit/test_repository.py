@@ -89,7 +89,8 @@ def test_no_large_file_is_tracked():
 
 
 def test_scripts_are_executable():
-    for name in (".ci/run", "scripts/setup_venv.sh", "scripts/system_deps.sh", "scripts/lock.sh"):
+    scripts = [f"scripts/{name}.sh" for name in ("setup_venv", "system_deps", "browser", "lock")]
+    for name in (".ci/run", *scripts):
         assert (ROOT / name).stat().st_mode & 0o100, name
         assert read(name).startswith("#!")
 
@@ -104,6 +105,18 @@ def test_script_and_message_name_the_same_system_packages():
         check=True,
     )
     assert done.stdout.split() == SYSTEM_PACKAGES.split()
+
+
+def test_a_missing_browser_is_said_and_fails_nothing(tmp_path):
+    done = subprocess.run(
+        ["/bin/sh", ROOT / "scripts" / "browser.sh"],
+        env={"PATH": str(tmp_path), "HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert "will not be tried in a browser" in done.stderr
+    assert len(done.stderr.splitlines()) == 1
 
 
 def test_images_install_the_lock_file_and_copy_what_exists():

@@ -68,7 +68,8 @@ def _race(case: str, rows: pd.DataFrame) -> Iterator[Finding]:
     reached = number(max(told["error"], TARGET), 2)
     text = f"{where}: the structured mesh reaches {reached} with {_cost(told)}"
     brief = (
-        f"Finite elements themselves reach {reached} with {_cost(told)} (the case {_case(rows)})."
+        f"Finite elements themselves reach a relative error of {reached} with {_cost(told)}, case "
+        f"{_case(rows)}."
     )
     key = f"{reached} in {quantity(told['seconds'], 's', 2)}"
     label = f"error and time of finite elements, {case_name(case)}"

@@ -54,7 +54,7 @@ LEAST_ERROR = 1e-6
 def sweep_explorer(
     loads: Mapping[str, xr.Dataset], name: str, replaces: Sequence[str] = ()
 ) -> InteractiveFigure | None:
-    """The figure, or None where there is no axis to draw along or no model.
+    """The figure, or None where there is no axis to draw along or no value to draw.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def sweep_explorer(
     """
     names = list(dict.fromkeys(n for study in loads.values() for n in model_names(study)))
     first = next(iter(loads.values()))
-    if not names or not swept_axes(first):
+    if not names or not swept_axes(first) or not any(map(_has_values, loads.values())):
         return None
     kept = thinned(first, len(names) * len(loads))
     studies = {load: study.isel(kept) for load, study in loads.items()}
@@ -96,6 +96,10 @@ def sweep_explorer(
         switches=switches(names, labels),
         replaces=tuple(replaces),
     )
+
+
+def _has_values(study: xr.Dataset) -> bool:
+    return bool(np.isfinite(study["stiffness"].values).any())
 
 
 def thinned(study: xr.Dataset, curves: int) -> dict[str, Any]:
