@@ -6,7 +6,7 @@ in `one_wave`.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -25,7 +25,12 @@ FAMILIES = {
     "beta": {0: 6, 1: 6, 2: 3, 3: 3},
     "omega": {0: 6, 1: 6, 2: 3, 3: 3},
 }
-"""Family -> power of ``1 - 2 s`` -> number of radial functions."""
+"""Family -> power of ``1 - 2 s`` -> number of functions of the film's thickness."""
+
+BESIDE = {name: dict.fromkeys(range(4), 4) for name in ("stream", "swirl")}
+"""The same for functions of r, where a film does not reach to the sides: unequal pairs, wide cells.
+
+There the matrix beside a sphere is as large as the sphere, and turning must move it around."""
 
 FLOWS = 5
 """Widths of the flows across the film."""
@@ -65,7 +70,7 @@ def _energies(
 ) -> Energies:
     r = space.r.value
     lift = stream_strains(stream, None, r)
-    isochoric, other = _bubbles(space, s)
+    isochoric, other = _bubbles(space, geometry, s)
     isochoric = np.concatenate([lift[:, None], _flows(space, geometry, s), isochoric], axis=1)
     sides, blocks = [], []
     for own, (radius, z, fade) in enumerate(
@@ -111,37 +116,45 @@ def _flows(space: Domain, geometry: Geometry, s: Jet) -> FloatArray:
     return np.stack(strain, axis=1)
 
 
-def _bubbles(space: Domain, s: Jet) -> tuple[FloatArray, FloatArray]:
+def _bubbles(space: Domain, geometry: Geometry, s: Jet) -> tuple[FloatArray, FloatArray]:
     """Strains of fields that vanish on both particles: without divergence, and the others."""
-    r, v, thickness = space.r.value, film_coordinate(space), 1.0 / space.span
-    bubble, odd = s * (1.0 - s), 1.0 - 2.0 * s
-    bases = {
-        "stream": bubble * bubble * space.span,
-        "swirl": bubble * bubble,
-        "alpha": bubble * thickness,
-        "beta": bubble,
-        "omega": bubble,
-    }
-    count = max(n for family in FAMILIES.values() for n in family.values())
-    table = legendre(v.value, count)
-    along = v.compose(table.value, table.first, table.second)
-    rows: dict[str, list[FloatArray]] = {name: [] for name in bases}
-    for name, counts in FAMILIES.items():
-        for power, n in counts.items():
-            flows = name in ("stream", "swirl")
-            base = bases[name] if flows else bases[name].first_order()
-            for _ in range(power):
-                base = base * odd
-            field = base * Jet(along.parts[:, :n])
-            rows[name].append(
-                {
-                    "stream": lambda f: stream_strains(f, None, r),
-                    "swirl": lambda f: stream_strains(None, f, r),
-                    "alpha": lambda f: strains(Field(f, None, None), r),
-                    "beta": lambda f: strains(Field(None, f, None), r),
-                    "omega": lambda f: strains(Field(None, None, f), r),
-                }[name](field)
-            )
+    kinds = [(film_coordinate(space), FAMILIES)]
+    # Cells that are assembled together are alike in this.
+    if np.any((geometry.radius_i != geometry.radius_j) | (geometry.outer > 1)):
+        kinds.append((space.r * space.r * (2 / geometry.outer**2) - 1.0, BESIDE))
+    rows: dict[str, list[FloatArray]] = {name: [] for name in FAMILIES}
+    for coordinate, families in kinds:
+        count = max(n for family in families.values() for n in family.values())
+        table = legendre(coordinate.value, count)
+        along = coordinate.compose(table.value, table.first, table.second)
+        for name, counts in families.items():
+            rows[name] += _family(name, counts, along, space, s)
     isochoric = np.concatenate([*rows["stream"], *rows["swirl"]], axis=1)
     other = np.concatenate([*rows["alpha"], *rows["beta"], *rows["omega"]], axis=1)
     return isochoric, other
+
+
+def _family(
+    name: str, counts: dict[int, int], along: Jet, space: Domain, s: Jet
+) -> list[FloatArray]:
+    """Strains of one family: for every power of ``1 - 2 s`` those of all functions along."""
+    r, bubble, odd = space.r.value, s * (1.0 - s), 1.0 - 2.0 * s
+    if name in ("stream", "swirl"):
+        base = bubble * bubble
+        base = base * space.span if name == "stream" else base
+    else:
+        base = (bubble * (1.0 / space.span) if name == "alpha" else bubble).first_order()
+    strain: Callable[[Jet], FloatArray] = {
+        "stream": lambda f: stream_strains(f, None, r),
+        "swirl": lambda f: stream_strains(None, f, r),
+        "alpha": lambda f: strains(Field(f, None, None), r),
+        "beta": lambda f: strains(Field(None, f, None), r),
+        "omega": lambda f: strains(Field(None, None, f), r),
+    }[name]
+    rows = []
+    for power, count in counts.items():
+        own = base
+        for _ in range(power):
+            own = own * odd
+        rows.append(strain(own * Jet(along.parts[:, :count])))
+    return rows

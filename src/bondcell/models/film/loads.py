@@ -20,6 +20,10 @@ LONG_ERROR = 5e-4
 """The same for gaps longer than the cylinder's radius, whose lines have as many points."""
 
 
+LATERAL_BATCH = 4
+"""Geometries assembled at once under shear and bending, whose fields have more parts."""
+
+
 def normal(cell: Cell) -> Springs:
     """Normal stiffness: least energy over fields that join film, particles and cylinder.
 
@@ -178,7 +182,9 @@ def _lateral(cell: Cell, assemble: Assembly, power: int) -> Springs:
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)
-        found, loss[short] = minimum(own, own.gap / scale, assemble, least, mirrors=False)
+        found, loss[short] = minimum(
+            own, own.gap / scale, assemble, least, mirrors=False, batch=LATERAL_BATCH
+        )
         value[short] = found * own.young_m * scale**power
     return _springs(cell, value, loss)
 
