@@ -7,7 +7,7 @@ import os
 import platform
 import subprocess
 from functools import cache
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import PackageNotFoundError, metadata, version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,13 @@ PACKAGES = ("bondcell", "numpy", "scipy", "xarray", "netCDF4", "scikit-fem", "gm
 """Distributions whose versions matter to a result."""
 
 UNKNOWN = "unknown"
+
+REFERENCES = (
+    "Kacianauskas et al., Interaction of particles via solid interface: model and analysis, "
+    "PARTICLES 2013 (the bond cell and the model fsi); the documentation of bondcell "
+    "(the models film, bounds, surrogate and the finite element reference)."
+)
+"""What a result file asks to be read, the attribute ``references`` of CF."""
 
 
 def collect(scene: Scene) -> dict[str, str]:
@@ -32,8 +39,13 @@ def collect(scene: Scene) -> dict[str, str]:
     """
     return {
         "title": scene.title,
+        "summary": scene.question or scene.title,
         "scene": scene.name,
         "parameters": scene.given_json,
+        "license": _license(),
+        "references": REFERENCES,
+        "citation": f"bondcell developers: bondcell {_version('bondcell')}, scene {scene.name!r}, "
+        f"sources {source_revision()}. See CITATION.cff.",
         **software(),
         **machine(),
     }
@@ -113,3 +125,12 @@ def _version(distribution: str) -> str:
         return version(distribution)
     except PackageNotFoundError:
         return UNKNOWN
+
+
+def _license() -> str:
+    """The package's own, which its results are under as well."""
+    try:
+        about = metadata("bondcell")
+    except PackageNotFoundError:
+        return UNKNOWN
+    return about["License-Expression"] if "License-Expression" in about else UNKNOWN

@@ -29,6 +29,11 @@ def test_attributes_of_a_scene():
     found = provenance.collect(scene)
     assert found["title"] == "One cell"
     assert found["scene"] == "cell"
+    assert found["summary"] == "One cell"
+    assert found["license"] == "BSD-3-Clause"
+    assert "PARTICLES 2013" in found["references"]
+    assert bondcell.__version__ in found["citation"]
+    assert "scene 'cell'" in found["citation"]
     assert json.loads(found["parameters"]) == GIVEN
     versions = json.loads(found["versions"])
     assert {"python", "numpy", "scikit-fem", "gmsh"} <= set(versions)
