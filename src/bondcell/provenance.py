@@ -133,4 +133,4 @@ def _license() -> str:
         about = metadata("bondcell")
     except PackageNotFoundError:
         return UNKNOWN
-    return about["License-Expression"] if "License-Expression" in about else UNKNOWN
+    return str((about.json or {}).get("license_expression", UNKNOWN))
