@@ -18,7 +18,7 @@ WITH_PATH = PATH="$(CURDIR)/$(BIN):$$PATH"
 SURROGATE = src/bondcell/models/data/surrogate.npz
 ACCURACY_MAP = src/bondcell/models/data/accuracy_map.npz
 
-.PHONY: specimen surrogate accuracy-map help study test test-all lint format lock schema bench setup system-deps clean
+.PHONY: specimen surrogate accuracy-map docs help study test test-all lint format lock schema bench setup system-deps clean
 
 help: ## list the targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | awk -F '\t' '{ printf "make %-12s %s\n", $$1, $$2 }'
@@ -66,6 +66,13 @@ accuracy-map: setup ## rebuild the data of the advice from the full atlas, minut
 
 schema: setup ## write params/*.schema.json, the scene format for editors
 	$(RUN) bondcell.scenes.schema
+
+# The pages show results of these two scenes; sphinx fetches nothing.
+DOCS_SCENES = results/figure4/study.nc results/smoke/study.nc
+docs: setup ## build the documentation to build/docs/index.html, warnings are errors
+	@sh scripts/system_deps.sh --optional
+	$(WITH_PATH) $(RUN) snakemake --cores $(CORES) $(DOCS_SCENES)
+	$(RUN) sphinx -W --keep-going -q -b html docs build/docs
 
 bench: setup ## run the benchmarks; they are no tests
 	@sh scripts/system_deps.sh --optional
