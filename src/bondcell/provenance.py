@@ -42,6 +42,7 @@ def collect(scene: Scene) -> dict[str, str]:
         "summary": scene.question or scene.title,
         "scene": scene.name,
         "parameters": scene.given_json,
+        **({"design": json.dumps(scene.design.about())} if scene.design else {}),
         "license": _license(),
         "references": REFERENCES,
         "citation": f"bondcell developers: bondcell {_version('bondcell')}, scene {scene.name!r}, "

@@ -31,7 +31,7 @@ def source_files(*modules: str) -> list[Path]:
     Examples
     --------
     >>> [path.name for path in source_files("bondcell.storage")]
-    ['errors.py', 'sealed_files.py', 'storage.py']
+    ['errors.py', 'replacing.py', 'sealed_files.py', 'storage.py']
     """
     return _closure(_path(name) for module in modules for name in _with_parents(module))
 

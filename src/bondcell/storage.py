@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-import errno
-import glob
-import os
-import shutil
-import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +11,8 @@ import numpy as np
 import xarray as xr
 
 from bondcell.errors import CannotWrite, DataError, Violation
+from bondcell.replacing import refusal
+from bondcell.replacing import replacing as replacing
 from bondcell.sealed_files import seal
 
 CONVENTIONS = "CF-1.11"
@@ -130,85 +126,11 @@ def _below(group: Any) -> Iterator[str]:
         yield from (f"{name}/{deeper}" for deeper in _below(inner))
 
 
-@contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
-    """A temporary name beside `path` that takes its place when the block ends well.
-
-    The content is on the disk before it gets its name. What killed writers of the same file left
-    behind is removed.
-
-    Raises
-    ------
-    CannotWrite
-        The disk or the folder refuses.
-
-    Examples
-    --------
-    >>> import tempfile
-    >>> target = Path(tempfile.mkdtemp()) / "table.csv"
-    >>> with replacing(target) as temporary:
-    ...     _ = temporary.write_text("gap,stiffness")
-    ...     target.exists()
-    False
-    >>> target.read_text()
-    'gap,stiffness'
-    """
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        for left in target.parent.glob(f".{glob.escape(target.name)}.*.tmp"):
-            left.unlink(missing_ok=True)
-        yield temporary
-        _flush(temporary)
-        os.replace(temporary, target)
-    except OSError as error:
-        if error.errno not in _REFUSALS:
-            raise
-        raise CannotWrite(_refusal(target, error)) from error
-    finally:
-        if temporary.exists():  # a read-only folder refuses to delete even what is not there
-            temporary.unlink()
-
-
-_REFUSALS = {
-    getattr(errno, name)
-    for name in ("EACCES", "EDQUOT", "EFBIG", "EIO", "ENOSPC", "EPERM", "EROFS")
-    if hasattr(errno, name)
-}
-
-
-def _flush(path: Path) -> None:
-    """Have a file's content on the disk, so that no crash leaves an empty file under its name."""
-    with path.open("rb+") as file:
-        os.fsync(file.fileno())
-
-
-def _refusal(target: Path, error: Exception) -> str:
-    """Why a file cannot be written, with the space that is left.
-
-    The netCDF library says "permission denied" of a full disk: so a plain file is tried.
-    """
-    folder = next(place for place in target.absolute().parents if place.is_dir())
-    reason = str(error)
-    try:
-        with tempfile.TemporaryFile(dir=folder) as probe:
-            probe.write(bytes(_PROBE))
-    except OSError as plain:
-        reason = os.strerror(plain.errno or 0)
-    free = shutil.disk_usage(folder).free / 1e6
-    return f"{target} cannot be written: {reason} ({free:.3g} MB are free there)"
-
-
-_PROBE = 1 << 18
-"""Bytes written to learn why a disk refuses."""
-
-
 def _write_group(dataset: xr.Dataset, path: Path, group: str | None) -> None:
     try:
         _to_netcdf(dataset, path, group)
     except RuntimeError as error:  # the library's word for all that the disk refuses
-        raise CannotWrite(_refusal(path, error)) from error
+        raise CannotWrite(refusal(path, error)) from error
 
 
 def _root_attributes(dataset: xr.Dataset) -> dict[str, str]:

@@ -14,11 +14,10 @@ from bondcell.jobs.batch_plan import plan
 from bondcell.jobs.collect import collect, collect_convergence, collect_other_loads
 from bondcell.jobs.convergence_run import run_convergence
 from bondcell.jobs.reference_batch import compute_reference
-from bondcell.jobs.relaxation_batch import asked_fe, asked_models, compute_relaxation
+from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.report import write_report
 from bondcell.results.accuracy import accuracy_of_loads
 from bondcell.results.load_groups import read_loads
-from bondcell.results.names import models_with
 from bondcell.scenes.scene import Scene, parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.specimen.files import collect_specimen
@@ -123,21 +122,15 @@ def _cells(scene: Scene, folder: Path) -> None:
         write_batch(result, path, digest)
         files[kind].append(path)
 
-    for batch in plan(scene):
-        kind, _, rest = batch.method.partition("_")
+    for batch in plan(scene).new:
+        kind = batch.name.partition("_")[0]
         if kind == "analytic":
-            load = rest or scene.load
-            wanted = models_with(scene, load)
-            result = compute_analytic(study, batch, wanted, load, scene.contributions)
-            keep(kind, batch.name, result, scene.models_digest)
+            result = compute_analytic(batch)
         elif kind == "fe":
-            result = compute_reference(study, batch, scene.reference.tolerance)
-            keep(kind, batch.name, result, scene.reference_digest)
+            result = compute_reference(batch)
         else:
-            who, _, load = rest.partition("_")
-            asked = (asked_models if who == "models" else asked_fe)(scene, load)
-            result = compute_relaxation(study, batch, scene.prony, asked, load)
-            keep(kind, batch.name, result, scene.relaxation_digest)
+            result = compute_relaxation(batch, scene.prony)
+        keep(kind, batch.name, result, batch.name)
     if scene.convergence is not None:
         keep("convergence", "convergence", run_convergence(scene), scene.convergence_digest)
     points = scene, study, files["analytic"], files["fe"]

@@ -6,17 +6,19 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from bondcell.errors import DataError, InputError
+from bondcell.errors import DataError
 from bondcell.evaluate import evaluate
 from bondcell.inputs import cell_from_study
 from bondcell.jobs.analytic_batch import compute_analytic
-from bondcell.jobs.batch import Batch, cell_at
+from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_files import describe, read_batch, write_batch
-from bondcell.jobs.batch_plan import JOB_SECONDS, analytic_batches, plan, reference_batches
+from bondcell.jobs.batch_plan import JOB_SECONDS, analytic_parts, plan, reference_parts
+from bondcell.jobs.cell_points import cell_at
 from bondcell.jobs.collect import collect, labels, machines
 from bondcell.jobs.job import job
 from bondcell.jobs.merge import merge
 from bondcell.jobs.reference_batch import compute_reference
+from bondcell.jobs.rows import analytic_rows, reference_rows, wanted_rows
 from bondcell.scenes.planned_scene import planned_scene
 from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study import build_study
@@ -45,66 +47,59 @@ def study(scene):
     return build_study(scene)
 
 
+def part(study, rows, positions):
+    cell, _ = cell_from_study(study)
+    return Batch(tuple(rows), cell_at(cell, np.asarray(positions)))
+
+
 @pytest.fixture(scope="module")
 def computed(scene, study):
     """Batches of the scene, cut finer than the plan would."""
-    found = []
-    for part in (1, 2, 3):
-        batch = Batch("analytic", part, 3)
-        found.append(compute_analytic(study, batch, scene.models, contributions=True))
-    for method in ("fe_roller", "fe_confined"):
-        for part in (1, 2):
-            found.append(compute_reference(study, Batch(method, part, 2), 1e-3))
+    shares = [np.arange(12)[start::3] for start in range(3)]
+    found = [compute_analytic(part(study, analytic_rows(scene, "normal"), at)) for at in shares]
+    for row in reference_rows(scene, "normal"):
+        found += [compute_reference(part(study, [row], at)) for at in (range(4), range(4, 12))]
     return found
 
 
-def test_names_are_stable_and_read_back():
-    batch = Batch("fe_roller", 3, 12)
-    assert batch.name == "fe_roller_3of12"
-    assert Batch.parse(batch.name) == batch
-
-
-@pytest.mark.parametrize("name", ["fe_roller", "fe_roller_0of2", "fe_roller_3of2", "../x_1of1", ""])
-def test_wrong_names_are_refused(name):
-    with pytest.raises(InputError, match="batch"):
-        Batch.parse(name)
-
-
 def test_plan_of_the_small_scene(scene):
-    names = [batch.name for batch in plan(scene)]
-    assert names == ["fe_roller_1of1", "fe_confined_1of1"]
+    methods = [batch.name.rpartition("_")[0] for batch in plan(scene).new]
+    assert methods == ["fe_roller", "fe_confined"]
+    assert plan(scene).needed == plan(scene).names("fe") == sorted(b.name for b in plan(scene).new)
 
 
 def test_plan_leaves_out_what_the_scene_does():
     without = {k: v for k, v in SCENE.items() if k != "reference"}
-    assert plan(parse_scene(without)) == []
+    assert plan(parse_scene(without)).new == []
     without = {k: v for k, v in SCENE.items() if k not in ("models", "contributions")}
-    assert [batch.method for batch in plan(parse_scene(without))] == ["fe_roller", "fe_confined"]
+    assert [batch.models for batch in plan(parse_scene(without)).new] == [
+        ("fe_roller",),
+        ("fe_confined",),
+    ]
+
+
+def cuts(geometries, states):
+    points = np.arange(geometries * states).reshape(geometries, states)
+    return reference_parts(list(points))
 
 
 def test_jobs_grow_with_the_work_and_never_one_a_point():
-    assert len(analytic_batches(10_000, 6)) == 0
-    assert len(analytic_batches(100_000, 6)) == 1
-    assert len(analytic_batches(10_000_000, 1)) == 10
-    assert len(analytic_batches(10_000_000, 6)) == 30
-    assert len(reference_batches({"gap": 200, "young_m": 100}, ("roller",))) == 10
-    assert len(reference_batches({"gap": 2, "young_m": 10**6}, ("roller",))) == 2
+    assert len(analytic_parts(np.arange(10_000), 6)) == 0
+    assert len(analytic_parts(np.arange(100_000), 6)) == 1
+    assert len(analytic_parts(np.arange(1_000_000), 1)) == 2
+    assert len(analytic_parts(np.arange(1_000_000), 9)) == 5
+    assert len(cuts(200, 100)) == 10
+    assert len(cuts(2, 50_000)) == 6
+    assert len(cuts(100_000, 1)) == 100
     assert JOB_SECONDS >= 30
 
 
-def test_parts_of_a_batch_share_no_geometry(study):
-    cell, _ = cell_from_study(study)
-    gaps = np.broadcast_to(cell.gap, cell.shape).ravel()
-    parts = [Batch("fe_roller", part, 2).points(cell) for part in (1, 2)]
-    assert sorted(np.concatenate(parts).tolist()) == list(range(12))
-    assert not set(gaps[parts[0]]) & set(gaps[parts[1]])
-
-
-def test_more_parts_than_geometries_leave_some_empty(study):
-    cell, _ = cell_from_study(study)
-    assert Batch("fe_roller", 5, 5).points(cell).size == 0
-    empty = compute_reference(study, Batch("fe_roller", 5, 5), 1e-3)
-    assert empty.sizes == {"model": 1, "point": 0}
+def test_batches_share_no_geometry_unless_it_is_very_large():
+    parts = cuts(30, 100)
+    assert sorted(np.concatenate(parts).tolist()) == list(range(3000))
+    geometries = [set(share // 100) for share in parts]
+    assert len(geometries) == 2
+    assert not set.intersection(*geometries)
 
 
 def test_points_are_picked_without_raveling(study):
@@ -146,19 +141,26 @@ def test_order_of_the_batches_does_not_matter(scene, study, computed):
     xr.testing.assert_identical(one, merge(study, computed[::-1], labels(scene)))
 
 
-def test_missing_doubled_and_foreign_points_are_refused(scene, study, computed):
-    with pytest.raises(DataError, match="fe_confined = '4 of 12 points'"):
+def test_missing_points_are_refused_others_passed_over(scene, study, computed):
+    with pytest.raises(DataError, match="fe_confined = '8 of 12 points missing'"):
         merge(study, computed[:-1], labels(scene))
-    with pytest.raises(DataError, match="fe_confined = '4 of 12 points'"):
-        merge(study, [*computed, computed[-1]], labels(scene))
-    shifted = computed[0].assign(point_index=computed[0].point_index + 10)
-    with pytest.raises(DataError, match="point_index"):
-        merge(study, [shifted, *computed[1:]], labels(scene))
-    twice = computed[0].assign(point_index=computed[0].point_index * 0)
-    with pytest.raises(DataError, match="point_index"):
-        merge(study, [twice, *computed[1:]], labels(scene))
-    with pytest.raises(DataError, match="model"):
-        merge(study, computed, {"fsi": "fsi"})
+    whole = merge(study, computed, labels(scene))
+    xr.testing.assert_identical(merge(study, [*computed, computed[-1]], labels(scene)), whole)
+    fewer = study.isel(gap=[0, 2])
+    xr.testing.assert_identical(merge(fewer, computed, labels(scene)), whole.isel(gap=[0, 2]))
+    only = merge(study, computed, {"fsi": "fsi"})
+    xr.testing.assert_identical(only.stiffness, whole.stiffness.sel(model=["fsi"]))
+
+
+def test_a_point_that_comes_twice_is_computed_once():
+    cell = {**SCENE["cell"], "young_m": "1 MPa", "poisson_m": 0.3, "radius_i": "8 mm"}
+    sweep = {"gap": ["1 mm", "2 mm"], "modulus_ratio": ["rigid"], "poisson_i": [0.2, 0.3]}
+    scene = parse_scene({"title": "Rigid", "cell": cell, "sweep": sweep, "models": ["fsi"]})
+    study = build_study(scene).isel(gap=[0, 1, 0])
+    batch = compute_analytic(part(study, analytic_rows(scene, "normal"), range(4)))
+    merged = merge(study, [batch], labels(scene))
+    assert merged.stiffness.shape == (1, 3, 1, 2)
+    xr.testing.assert_equal(merged.isel(gap=0), merged.isel(gap=2))
 
 
 def test_single_cell_without_sweep():
@@ -170,7 +172,7 @@ def test_single_cell_without_sweep():
         }
     )
     study = build_study(scene)
-    merged = merge(study, [compute_analytic(study, Batch("analytic"), ("fsi",))], labels(scene))
+    merged = merge(study, [compute_analytic(part(study, wanted_rows(scene), [0]))], labels(scene))
     assert merged.stiffness.dims == ("model",)
     assert "k_i" not in merged
 
@@ -185,7 +187,7 @@ def test_a_failed_geometry_stays_a_flagged_nan_in_the_file(tmp_path, scene, stud
 
     monkeypatch.setattr("bondcell.jobs.reference_batch.solve", solve)
     with pytest.warns(RuntimeWarning, match="no factorisation"):
-        batch = compute_reference(study, Batch("fe_roller"), 1e-3)
+        batch = compute_reference(part(study, reference_rows(scene, "normal")[:1], range(12)))
     write_batch(batch, tmp_path / "fe.nc", "digest")
     back = read_batch(tmp_path / "fe.nc", "digest")
     merged = merge(study, [back], {"fe_roller": "fe"})
@@ -204,9 +206,7 @@ def test_file_of_other_parameters_is_refused(tmp_path, computed):
 def test_collect_names_damaged_files(tmp_path, scene, study, computed):
     files = [tmp_path / f"{i}.nc" for i in range(len(computed))]
     for file, batch in zip(files, computed, strict=True):
-        analytic = "fe_" not in str(batch.model.values[0])
-        digest = scene.models_digest if analytic else scene.reference_digest
-        write_batch(batch, file, digest)
+        write_batch(batch, file, file.stem)
     result = collect(scene, study, files[:3], files[3:])
     inline = collect(scene, study, [], files[3:])
     xr.testing.assert_allclose(inline.drop_vars("seconds"), result.drop_vars("seconds"))
@@ -238,17 +238,17 @@ def test_scene_edited_after_planning_is_refused(tmp_path):
         "young_m: 1 MPa, poisson_i: 0.2, poisson_m: 0.3}\n"
     )
     path.write_text(text)
-    digest = load_scene(path).models_digest
-    assert planned_scene(path, models_digest=digest).title == "One"
+    digest = load_scene(path).digest
+    assert planned_scene(path, digest=digest).title == "One"
     path.write_text(text.replace("1 mm", "2 mm"))
     with pytest.raises(DataError, match="edited since"):
-        planned_scene(path, models_digest=digest)
+        planned_scene(path, digest=digest)
 
 
 def test_job_prints_one_line(capsys):
-    with job("small: analytic_1of1") as log:
+    with job("small: analytic") as log:
         log.result = "12/12 points"
-    assert capsys.readouterr().err.startswith("small: analytic_1of1: 12/12 points, 0.")
+    assert capsys.readouterr().err.startswith("small: analytic: 12/12 points, 0.")
 
 
 def test_job_turns_bad_input_into_a_message_and_status_2(capsys):

@@ -11,6 +11,7 @@ from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.batch_plan import plan
 from bondcell.jobs.collect import collect, collect_other_loads
 from bondcell.jobs.reference_batch import compute_reference
+from bondcell.jobs.rows import Row
 from bondcell.results.accuracy import accuracy_table
 from bondcell.results.view import load_name, model_names, stiffness_unit
 from bondcell.scenes.scene import parse_scene, scene_json_schema
@@ -49,17 +50,16 @@ def path(scene, study, tmp_path_factory):
     """The scene's file, made from its batches as the workflow does it."""
     folder = tmp_path_factory.mktemp("loads")
     files = []
-    for batch in plan(scene):
+    for batch in plan(scene).new:
         files.append(folder / f"{batch.name}.nc")
-        solved = compute_reference(study, batch, scene.reference.tolerance)
-        write_batch(solved, files[-1], scene.reference_digest)
+        write_batch(compute_reference(batch), files[-1], batch.name)
     groups = collect_other_loads(scene, study, [], files)
     return write_dataset(collect(scene, study, [], files), folder / "study.nc", groups)
 
 
 def test_batches_of_every_load(scene):
-    names = [batch.name for batch in plan(scene)]
-    assert names == ["fe_roller_1of1", "fe_confined_1of1", "fe_torsion_1of1"]
+    models = [batch.models for batch in plan(scene).new]
+    assert models == [("fe_roller",), ("fe_confined",), ("fe_torsion",)]
 
 
 def test_first_load_in_the_root_others_in_groups(path):
@@ -171,6 +171,7 @@ def test_schema_takes_one_load_or_a_list():
         jsonschema.validate(without("load") | {"load": ["twist"]}, schema)
 
 
-def test_a_batch_of_nothing_known_is_refused(study):
+def test_a_batch_of_nothing_known_is_refused(scene):
+    points = plan(scene).new[0].points
     with pytest.raises(ValueError, match="boundary condition or load"):
-        compute_reference(study, Batch("fe"), 1e-3)
+        compute_reference(Batch((Row("fe", "normal", "fe"),), points))

@@ -13,8 +13,10 @@ from bondcell.errors import DataError, SceneError
 from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.batch_plan import plan
+from bondcell.jobs.cell_points import cell_at
 from bondcell.jobs.collect_relaxation import collect_relaxation
-from bondcell.jobs.relaxation_batch import asked_fe, asked_models, compute_relaxation, shift_factor
+from bondcell.jobs.relaxation_batch import compute_relaxation, shift_factor
+from bondcell.jobs.rows import relaxation_rows, wanted_rows
 from bondcell.results.relaxation_bonds import bond_series, bond_table
 from bondcell.results.relaxation_tables import (
     accuracy_over_time,
@@ -24,6 +26,7 @@ from bondcell.results.relaxation_tables import (
 )
 from bondcell.results.relaxation_view import series_words
 from bondcell.scenes.materials import MaterialError, known_materials, load_material, parse_material
+from bondcell.scenes.points import scene_cell
 from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.status import cf_flag_attributes
@@ -86,14 +89,17 @@ def result(scene, tmp_path_factory):
     """The relaxation of the whole scene by way of its batches' files."""
     folder = tmp_path_factory.mktemp("batches")
     study, files = build_study(scene), []
-    asked = {"models": asked_models, "fe": asked_fe}
-    for kind, part, parts in (("models", 1, 1), ("fe", 1, 2), ("fe", 2, 2)):
-        batch = Batch(f"relaxation_{kind}_normal", part, parts)
-        found = compute_relaxation(
-            study, batch, scene.prony, asked[kind](scene, "normal"), "normal"
-        )
+    rows = relaxation_rows(scene, "normal")
+    cell = scene_cell(scene)
+    everywhere = np.arange(cell.gap.size)
+    for chosen, at in (
+        (rows[:-1], everywhere),
+        (rows[-1:], everywhere[::2]),
+        (rows[-1:], everywhere[1::2]),
+    ):
+        batch = Batch(tuple(chosen), cell_at(cell, at))
         files.append(folder / f"{batch.name}.nc")
-        write_batch(found, files[-1], scene.relaxation_digest)
+        write_batch(compute_relaxation(batch, scene.prony), files[-1], batch.name)
     relaxing = collect_relaxation(scene, study, files, "normal")
     with pytest.raises(DataError, match="points missing"):
         collect_relaxation(scene, study, files[1:2], "normal")
@@ -113,10 +119,8 @@ def test_series_of_the_scene(scene):
     four = scene.prony.cases()[3]
     np.testing.assert_allclose(four.times, 10.0 ** np.array([-1.5, -0.5, 0.5, 1.5]))
     assert sum(four.weights) == pytest.approx(0.5)
-    assert {batch.method for batch in plan(scene)} >= {
-        "relaxation_models_normal",
-        "relaxation_fe_normal",
-    }
+    methods = {name.rpartition("_")[0] for name in plan(scene).names("relaxation")}
+    assert methods == {"relaxation_models_normal", "relaxation_fe_normal"}
 
 
 def test_result_is_what_the_functions_give(scene, result):
@@ -213,10 +217,8 @@ def test_temperature_shifts_the_times(tmp_path):
     assert (cold.temperature, warm.temperature) == (293.15, 303.15)
     factor = shift_factor(scene.prony.known_material("rubber"), 303.15)
     assert factor == pytest.approx(10 ** (-100 / 60))
-    batch = Batch("relaxation_models_normal")
-    found = compute_relaxation(
-        build_study(scene), batch, scene.prony, asked_models(scene, "normal")[:1], "normal"
-    )
+    batch = Batch(tuple(relaxation_rows(scene, "normal")[:1]), scene_cell(scene).ravel())
+    found = compute_relaxation(batch, scene.prony)
     ratio = found["tau_k"].isel(series=1) / found["tau_k"].isel(series=0)
     np.testing.assert_allclose(ratio, factor, rtol=1e-12)
     wrong = violations(spoiled(materials=["rubber"], temperatures=["-40 degC"]), materials=tmp_path)
@@ -282,9 +284,10 @@ def test_digests_follow_the_materials(tmp_path):
     before = load_scene(path)
     material.write_text(SHIFTED.replace("0.4]", "0.3]"))
     after = load_scene(path)
-    assert before.relaxation_digest != after.relaxation_digest
+    assert before.prony_digest != after.prony_digest
     assert before.digest != after.digest
-    assert before.models_digest == after.models_digest
+    models = [[row for row in wanted_rows(s) if row.kind == "analytic"] for s in (before, after)]
+    assert models[0] == models[1]
     material.write_text(SHIFTED.replace("kind: polymer", "kind: jelly"))
     with pytest.raises(SceneError, match=r"materials/rubber\.kind"):
         load_scene(path)

@@ -14,7 +14,7 @@ from bondcell.jobs.collect import collect, collect_convergence, collect_other_lo
 from bondcell.jobs.collect_relaxation import collect_methods
 from bondcell.jobs.convergence_run import run_convergence
 from bondcell.jobs.reference_batch import compute_reference
-from bondcell.jobs.relaxation_batch import asked_fe, asked_models, compute_relaxation
+from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.jobs.relaxation_methods import run_methods
 from bondcell.outputs import STIFFNESS_UNITS
 from bondcell.results.variables import groups
@@ -50,7 +50,23 @@ RELAXING = {
     },
 }
 SPECIMEN = {"title": "Lattices", "specimen": {"lattices": ["lattice_paper", "lattice_fsi"]}}
-EXAMPLES = {"sweep": SWEEP, "relaxing": RELAXING, "specimen": SPECIMEN}
+DESIGN = {
+    "title": "A design beside a sweep",
+    "cell": CELL,
+    "sweep": {"gap": ["0.5 mm", "2 mm"]},
+    "design": {
+        "kind": "sobol",
+        "points": 3,
+        "ranges": {
+            "modulus_ratio": {"start": 10, "stop": 1e4, "spacing": "log"},
+            "poisson_m": {"start": 0, "stop": 0.4},
+        },
+    },
+    "models": ["fsi"],
+    "reference": {"tolerance": 1e-2},
+    "load": ["normal", "shear"],
+}
+EXAMPLES = {"sweep": SWEEP, "design": DESIGN, "relaxing": RELAXING, "specimen": SPECIMEN}
 
 
 def run(scene, folder: Path) -> Path:
@@ -61,15 +77,11 @@ def run(scene, folder: Path) -> Path:
         write_batch(data, batches / f"{name}.nc", digest)
 
     study = build_study(scene) if scene.has_points else None
-    for batch in plan(scene):
-        kind, *of = batch.method.split("_")
-        if kind == "fe":
-            found = compute_reference(study, batch, scene.reference.tolerance)
-            write(batch.name, found, scene.reference_digest)
-        elif kind == "relaxation":
-            asked = (asked_models if of[0] == "models" else asked_fe)(scene, of[-1])
-            found = compute_relaxation(study, batch, scene.prony, asked, of[-1])
-            write(batch.name, found, scene.relaxation_digest)
+    for batch in plan(scene).new:
+        if batch.name.startswith("fe"):
+            write(batch.name, compute_reference(batch), batch.name)
+        elif batch.name.startswith("relaxation"):
+            write(batch.name, compute_relaxation(batch, scene.prony), batch.name)
     if scene.convergence:
         write("convergence", run_convergence(scene), scene.convergence_digest)
     if scene.prony and scene.prony.methods:

@@ -24,6 +24,10 @@ def path(tmp_path_factory):
     return folder / "case.yaml"
 
 
+MOST_PLANNED = 100_000
+"""Points up to which a case is planned: every one of them is hashed."""
+
+
 def refusal(path):
     """What is wrong with a file; if nothing is, its scene can be planned."""
     try:
@@ -33,7 +37,8 @@ def refusal(path):
     except SceneError as error:
         return error
     assert scene.digest
-    assert all(batch.name for batch in plan(scene))
+    if scene.points <= MOST_PLANNED:
+        assert all(batch.name for batch in plan(scene).new)
     return None
 
 

@@ -5,12 +5,16 @@ import os
 import resource
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+import yaml
 
 from bondcell.errors import CannotWrite
+from bondcell.jobs.batch_plan import plan
+from bondcell.scenes.scene import parse_scene
 from bondcell.sealed_files import is_whole, seal
 from bondcell.storage import read_dataset, write_dataset
 
@@ -22,7 +26,15 @@ models: [fsi]
 reference: {tolerance: 1e-2}
 """
 STUDY = "results/some/study.nc"
-BATCH = "results/some/batches/fe_roller_1of1.nc"
+FINER = SCENE.replace("1e-2", "1e-3")
+
+
+def batch_file(scene):
+    name = plan(parse_scene(yaml.safe_load(scene))).needed[0]
+    return f"results/some/batches/{name}.nc"
+
+
+BATCH = batch_file(SCENE)
 
 
 @pytest.fixture(scope="module")
@@ -142,8 +154,8 @@ def without_override():
 
 
 def permit(workspace, mode):
-    for name in (BATCH, STUDY):
-        folder = (workspace / name).parent
+    results = (workspace / STUDY).parent
+    for folder in (results, results / "batches", results / "batches/manifest"):
         if folder.exists():  # Snakemake clears a folder away whose only file failed
             folder.chmod(mode)
 
@@ -157,7 +169,7 @@ def permit(workspace, mode):
 def test_disk_that_refuses_is_said_and_nothing_is_lost(some, fault, reason):
     workspace, _ = some
     scene = workspace / "params/some.yaml"
-    scene.write_text(SCENE.replace("1e-2", "1e-3"))
+    scene.write_text(FINER)
     study = (workspace / STUDY).read_bytes()
     permit(workspace, 0o755 if fault is without_room else 0o555)
     try:
@@ -167,7 +179,7 @@ def test_disk_that_refuses_is_said_and_nothing_is_lost(some, fault, reason):
         scene.write_text(SCENE)
     assert done.returncode == 1
     assert reason in done.stdout
-    assert BATCH in done.stdout
+    assert Path(batch_file(FINER)).stem in done.stdout
     assert (workspace / STUDY).read_bytes() == study
     assert not list((workspace / "results").rglob("*.tmp"))
 

@@ -11,7 +11,10 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+import yaml
 
+from bondcell.jobs.batch_plan import plan
+from bondcell.scenes.scene import parse_scene
 from bondcell.storage import read_dataset
 
 SCENE = """\
@@ -22,7 +25,7 @@ models: [fsi]
 reference: {tolerance: 1e-2}
 """
 STUDY = "results/some/study.nc"
-BATCH = "results/some/batches/fe_roller_1of1.nc"
+BATCH = f"results/some/batches/{plan(parse_scene(yaml.safe_load(SCENE))).needed[0]}.nc"
 KILLS = 20
 
 

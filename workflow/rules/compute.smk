@@ -1,5 +1,6 @@
-# The jobs that compute. A scene's file is `ancient` because it may change without changing the
-# points: what matters is the digest in the parameters. Linear algebra runs on as many threads as a
+# The jobs that compute. A batch is named after what it answers, its points stand in the manifest: the
+# scene's file is `ancient`, as it may change without changing them. Elsewhere what matters of the
+# scene is the digest in the parameters. Linear algebra runs on as many threads as a
 # job claims, which is one; two jobs at once use two cores.
 ATTEMPTS = 3  # a job over its bounds is tried again with twice as much
 
@@ -14,14 +15,13 @@ rule analytic:
         scene=ancient("params/{scene}.yaml"),
         sources=sources("analytic.py"),
     output:
-        "results/{scene}/batches/analytic_{part}.nc",
-    wildcard_constraints:
-        part=r"([a-z]+_)?\d+of\d+",
+        "results/{scene}/batches/analytic_{load}_{key}.nc",
     params:
         sources=contents("analytic.py"),
-        digest=lambda wildcards: scene_of(wildcards).models_digest,
+        batch=lambda w: f"analytic_{w.load}_{w.key}",
+        entry=lambda w: entry_of(scene_of(w), f"analytic_{w.load}_{w.key}"),
     message:
-        "{wildcards.scene}: analytic models, batch {wildcards.part}"
+        "{wildcards.scene}: analytic models, {params.batch}"
     script:
         "../scripts/analytic.py"
 
@@ -31,7 +31,7 @@ rule reference:
         scene=ancient("params/{scene}.yaml"),
         sources=sources("reference.py"),
     output:
-        "results/{scene}/batches/fe_{bc}_{part}.nc",
+        "results/{scene}/batches/fe_{bc}_{key}.nc",
     retries: ATTEMPTS - 1
     resources:
         mem_mb=bound(2000),
@@ -40,9 +40,10 @@ rule reference:
         attempts=ATTEMPTS,
     params:
         sources=contents("reference.py"),
-        digest=lambda wildcards: scene_of(wildcards).reference_digest,
+        batch=lambda w: f"fe_{w.bc}_{w.key}",
+        entry=lambda w: entry_of(scene_of(w), f"fe_{w.bc}_{w.key}"),
     message:
-        "{wildcards.scene}: finite elements ({wildcards.bc}), batch {wildcards.part}"
+        "{wildcards.scene}: finite elements, {params.batch}"
     script:
         "../scripts/reference.py"
 
@@ -52,12 +53,13 @@ rule relaxation_models:
         scene=ancient("params/{scene}.yaml"),
         sources=sources("relaxation_models.py"),
     output:
-        "results/{scene}/batches/relaxation_models_{load}_{part}.nc",
+        "results/{scene}/batches/relaxation_models_{load}_{key}.nc",
     params:
         sources=contents("relaxation_models.py"),
-        digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
+        batch=lambda w: f"relaxation_models_{w.load}_{w.key}",
+        entry=lambda w: entry_of(scene_of(w), f"relaxation_models_{w.load}_{w.key}"),
     message:
-        "{wildcards.scene}: relaxation by models ({wildcards.load}), batch {wildcards.part}"
+        "{wildcards.scene}: relaxation by models, {params.batch}"
     script:
         "../scripts/relaxation_models.py"
 
@@ -67,12 +69,13 @@ rule relaxation_fe:
         scene=ancient("params/{scene}.yaml"),
         sources=sources("relaxation_fe.py"),
     output:
-        "results/{scene}/batches/relaxation_fe_{load}_{part}.nc",
+        "results/{scene}/batches/relaxation_fe_{load}_{key}.nc",
     params:
         sources=contents("relaxation_fe.py"),
-        digest=lambda wildcards: scene_of(wildcards).relaxation_digest,
+        batch=lambda w: f"relaxation_fe_{w.load}_{w.key}",
+        entry=lambda w: entry_of(scene_of(w), f"relaxation_fe_{w.load}_{w.key}"),
     message:
-        "{wildcards.scene}: relaxation by finite elements ({wildcards.load}), batch {wildcards.part}"
+        "{wildcards.scene}: relaxation by finite elements, {params.batch}"
     script:
         "../scripts/relaxation_fe.py"
 

@@ -8,12 +8,17 @@ def is_damaged(path):
     """Whether a batch file is there but not whole; then it is removed, or would be."""
     if not workflow.is_main_process or not Path(path).is_file() or is_whole(path):
         return False
-    acts = workflow.executor_plugin is not None and not workflow.dryrun
+    acts = is_acting()
     what = "removed, it is computed again where it is needed" if acts else "it would be removed"
     print(f"warning: {path} does not match its checksum: {what}", file=sys.stderr)
     if acts:
         Path(path).unlink()
     return True
+
+
+def is_acting():
+    """Whether this process computes, or is one of a job, and not one that only looks."""
+    return workflow.executor_plugin is not None and not workflow.dryrun
 
 
 def checked(files):

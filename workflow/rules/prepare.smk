@@ -14,7 +14,7 @@ wildcard_constraints:
     scene="[a-z][a-z0-9_]*",
     bc="[a-z]+",
     load="[a-z]+",
-    part=r"\d+of\d+",
+    key="[0-9a-f]{16}",
 
 
 def stop_planning(errors):
@@ -60,12 +60,63 @@ def study_scenes():
     return scenes
 
 
-def batch_files(scene, method):
-    """Files of the batches of a scene by a method (analytic, fe, relaxation)."""
-    from bondcell.jobs.batch_plan import plan
+def planned_batches(scene):
+    """Batches of a scene; new ones are recorded, so that every job finds its points."""
+    return plan_batches(f"results/{scene.name}/batches", scene.name)
 
-    names = [batch.name for batch in plan(scene) if batch.method.split("_")[0] == method]
+
+@cache
+def plan_batches(folder, name):
+    from bondcell.jobs.batch_plan import plan
+    from bondcell.jobs.manifest import lost_entries, read_manifest
+
+    known = read_manifest(folder)
+    lost = lost_entries(folder, known)
+    if lost:
+        known += recovered_entries(lost)
+
+    def is_there(batch):
+        path = f"{folder}/{batch}.nc"
+        return not is_damaged(path) and Path(path).is_file()
+
+    found = plan(load(f"params/{name}.yaml"), known, is_there)
+    keep(folder, found.new)
+    return found
+
+
+def recovered_entries(files):
+    """Entries of batches that the manifest lost, from their files; they are recorded again."""
+    from bondcell.jobs.batch_files import recovered
+    from bondcell.jobs.manifest import Entry
+
+    batches = [batch for batch in map(recovered, files) if batch is not None]
+    keep(Path(files[0]).parent, batches)
+    return [Entry(batch.name, batch.rows, batch.hashes) for batch in batches]
+
+
+def keep(folder, batches):
+    """Record batches in a folder's manifest, unless this process only looks."""
+    from bondcell.jobs.manifest import record
+
+    if not is_acting():
+        return
+    try:
+        record(folder, batches)
+    except BondcellError as error:
+        print(f"error: {error}", file=sys.stderr)
+        raise SystemExit(1)
+
+
+def batch_files(scene, kind):
+    """Files of the batches of a scene's points by a kind (analytic, fe, relaxation)."""
+    names = planned_batches(scene).names(kind)
     return checked([f"results/{scene.name}/batches/{name}.nc" for name in names])
+
+
+def entry_of(scene, batch):
+    """Entry of a batch in the manifest, where a job finds its points."""
+    planned_batches(scene)
+    return f"results/{scene.name}/batches/manifest/{batch}.npz"
 
 
 def convergence_files(scene):

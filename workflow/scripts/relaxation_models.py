@@ -1,20 +1,16 @@
 """Relaxation by a scene's analytic models at the points of one batch."""
 
-from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.job import job
-from bondcell.jobs.relaxation_batch import asked_models, compute_relaxation
+from bondcell.jobs.manifest import read_entry
+from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.scenes.planned_scene import planned_scene
-from bondcell.scenes.study import build_study
 
-load = snakemake.wildcards.load
-batch = Batch.parse(f"relaxation_models_{load}_{snakemake.wildcards.part}")
-with job(f"{snakemake.wildcards.scene}: {batch.name}") as log:
+with job(f"{snakemake.wildcards.scene}: {snakemake.params.batch}") as log:
     log.unit = "geometries"
-    digest = snakemake.params.digest
-    scene = planned_scene(snakemake.input.scene, relaxation_digest=digest)
-    asked = asked_models(scene, load)
-    study = build_study(scene)
-    result = compute_relaxation(study, batch, scene.prony, asked, load, log.progress)
-    write_batch(result, snakemake.output[0], digest)
+    batch = read_entry(snakemake.params.entry)
+    options = dict(batch.rows[0].options)
+    scene = planned_scene(snakemake.input.scene, prony_digest=options["prony"])
+    result = compute_relaxation(batch, scene.prony, log.progress)
+    write_batch(result, snakemake.output[0], batch.name)
     log.result = f"{result.sizes['series']} series at {result.sizes['point']} points"

@@ -87,17 +87,25 @@ def _axes(study: xr.Dataset) -> str:
     """Every dimension, then every input that does not vary."""
     from bondcell.cell import UNITS
     from bondcell.cli.text_table import text_table
-    from bondcell.results.view import axis_unit, axis_values
+    from bondcell.results.view import SAMPLE, axis_unit, axis_values, is_scattered, parameters
     from bondcell.wording import meaning, quantity
 
     rows = []
     for name, size in study.sizes.items():
         if name == "model":
             continue
+        if name == SAMPLE:
+            rows.append([name, f"{size} points", "", "points that are no grid"])
+            continue
         values, unit = axis_values(study, name), axis_unit(study, str(name))
         span = quantity(values.min(), unit)
         span += f" to {quantity(values.max(), unit)}" if size > 1 else ""
         rows.append([str(name), f"{size} values", span, meaning(str(name))])
+    for name in parameters(study) if is_scattered(study) else ():
+        if name not in study.sizes:
+            values, unit = axis_values(study, name), axis_unit(study, name)
+            span = f"{quantity(values.min(), unit)} to {quantity(values.max(), unit)}"
+            rows.append([name, "along sample", span, meaning(name)])
     for name, unit in UNITS.items():
         if name in study and not study[name].dims:
             rows.append([name, "fixed", quantity(study[name].item(), unit), meaning(name)])
@@ -147,10 +155,10 @@ def _largest(here: xr.Dataset, name: str, form: str) -> str:
 
 def _errors(study: xr.Dataset, table: pd.DataFrame) -> str:
     from bondcell.cli.text_table import text_table
-    from bondcell.results.view import axis_unit, swept_axes
+    from bondcell.results.view import axis_unit, parameters
     from bondcell.wording import at, percent
 
-    axes = swept_axes(study)
+    axes = parameters(study)
     rows = []
     for _, row in table[table["group_axis"] == "all"].iterrows():
         where = ", ".join(at(axis, row[f"at_{axis}"], axis_unit(study, axis)) for axis in axes)

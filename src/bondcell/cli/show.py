@@ -140,14 +140,17 @@ def _drawing(data: xr.Dataset, x: str, y: str) -> Drawing:
     """Stiffness over a swept axis with the errors of the models; anything else plainly."""
     from bondcell.figures.bars import draw_bars
     from bondcell.figures.curves import draw_curves
+    from bondcell.figures.scatter import draw_scatter
     from bondcell.figures.style import drawing_style
     from bondcell.figures.variable import draw_variable
-    from bondcell.results.view import swept_axes
+    from bondcell.results.view import is_scattered, parameters, swept_axes
 
     with drawing_style():
         if y == "stiffness" and y in data and "model" in data[y].dims:
             axes = swept_axes(data)
-            if x in axes:
+            if is_scattered(data) and x in parameters(data):
+                return draw_scatter(data, x=x)
+            if x in axes and not is_scattered(data):
                 return draw_curves(data, x=x)
             if x == "model" and not axes:
                 return draw_bars(data)

@@ -14,10 +14,11 @@ from bondcell.figures.curves import draw_curves
 from bondcell.figures.error_maps import draw_error_maps
 from bondcell.figures.relaxation import relaxation_drawings
 from bondcell.figures.relaxation_checks import draw_checks, draw_methods
+from bondcell.figures.scatter import draw_scatter
 from bondcell.figures.stability import draw_stability
 from bondcell.figures.style import Drawing, drawing_style, save
 from bondcell.results.atlas import accuracy_by_region, error_against_time
-from bondcell.results.view import load_name, model_names, swept_axes
+from bondcell.results.view import is_scattered, load_name, model_names, swept_axes
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -93,6 +94,8 @@ def atlas_drawings(loads: Mapping[str, xr.Dataset]) -> Iterator[Drawing]:
 def sweep_drawings(study: xr.Dataset, suffix: str = "") -> Iterator[Drawing]:
     """What a sweep's result has to show: bars at one point, else curves, and maps if there are any.
 
+    Points that are no grid are marks over each of their parameters.
+
     Parameters
     ----------
     study
@@ -104,6 +107,9 @@ def sweep_drawings(study: xr.Dataset, suffix: str = "") -> Iterator[Drawing]:
         return
     if not swept_axes(study):
         yield draw_bars(study, f"stiffness{suffix}")
+        return
+    if is_scattered(study):
+        yield draw_scatter(study, f"stiffness{suffix}")
         return
     yield draw_curves(study, f"stiffness{suffix}")
     maps = draw_error_maps(study, f"error_maps{suffix}")

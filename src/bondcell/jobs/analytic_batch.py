@@ -7,8 +7,7 @@ import xarray as xr
 
 from bondcell.cell import Cell
 from bondcell.evaluate import evaluate
-from bondcell.inputs import cell_from_study
-from bondcell.jobs.batch import Batch, cell_at
+from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_results import batch_dataset
 from bondcell.outputs import PointResults
 
@@ -22,36 +21,21 @@ CONTRIBUTIONS = ("k_i", "k_int", "k_j")
 """The springs of the series model."""
 
 
-def compute_analytic(
-    study: xr.Dataset,
-    batch: Batch,
-    models: tuple[str, ...],
-    load: str = "normal",
-    contributions: bool = False,
-) -> xr.Dataset:
-    """Stiffness by each model at the batch's points.
+def compute_analytic(batch: Batch) -> xr.Dataset:
+    """Stiffness by each model of a batch at its points.
 
     Parameters
     ----------
-    study
-        Inputs of the whole scene.
     batch
-        Which of its points.
-    models
-        Names in ``bondcell.MODELS``.
-    load
-        Load name.
-    contributions
-        Whether to keep the springs ``k_i``, ``k_int`` and ``k_j`` of ``fsi``.
+        Rows of analytic models; one with the option ``contributions`` keeps its springs.
     """
-    cell, _ = cell_from_study(study)
-    positions = batch.points(cell)
-    points = _as_study(cell_at(cell, positions))
-    answers = {model: _timed(points, model, load) for model in models}
+    points = _as_study(batch.points)
+    answers = {row.model: _timed(points, row.model, row.load) for row in batch.rows}
     results = {model: _results(answer) for model, answer in answers.items()}
-    dataset = batch_dataset(positions, results, load)
-    if contributions and "fsi" in answers:
-        dataset.update(answers["fsi"][list(CONTRIBUTIONS)])
+    dataset = batch_dataset(batch, results)
+    for row in batch.rows:
+        if dict(row.options).get("contributions"):
+            dataset.update(answers[row.model][list(CONTRIBUTIONS)])
     return dataset
 
 

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
 from bondcell import provenance
+from bondcell.cell import UNITS, Cell
 from bondcell.errors import DataError, Violation
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.rows import Row
 from bondcell.sealed_files import is_whole
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset
@@ -49,6 +53,32 @@ def read_batch(path: str | Path, digest: str) -> xr.Dataset:
         allowed = f"{digest}: delete the file to compute it again"
         raise DataError([Violation(SEAL, sealed, allowed)], str(path))
     return batch
+
+
+def read_point_batch(path: str | Path) -> xr.Dataset:
+    """Read a batch of points, which is sealed with its name."""
+    return read_batch(path, Path(path).stem)
+
+
+def batch_of(results: xr.Dataset) -> Batch:
+    """The batch that a file's content answers.
+
+    Parameters
+    ----------
+    results
+        With the inputs and the attribute ``rows``, see `bondcell.jobs.batch_results.about_batch`.
+    """
+    rows = tuple(Row.from_list(row) for row in json.loads(results.attrs["rows"]))
+    return Batch(rows, Cell(**{name: results[name].values for name in UNITS}))
+
+
+def recovered(path: str | Path) -> Batch | None:
+    """The batch of a file whose entry in the manifest was lost; None if the file is no such."""
+    try:
+        batch = batch_of(read_point_batch(path))
+    except (DataError, KeyError, ValueError):
+        return None
+    return batch if batch.name == Path(path).stem else None
 
 
 def describe(batch: xr.Dataset) -> str:

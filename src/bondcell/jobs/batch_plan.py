@@ -1,14 +1,23 @@
-"""How many jobs a scene is cut into: an explicit cost model, jobs of a useful size."""
+"""What is left to compute of a scene, cut into jobs of a useful size by an explicit cost model."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import ceil, prod
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from math import ceil
 from typing import TYPE_CHECKING
 
-from bondcell.cell import GEOMETRY
-from bondcell.jobs.batch import ANALYTIC, REFERENCE, RELAXATION, Batch
-from bondcell.results.names import all_variants, models_with
+import numpy as np
+from numpy.typing import NDArray
+
+from bondcell.by_geometry import geometry_groups
+from bondcell.cell import Cell
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.cell_points import cell_at
+from bondcell.jobs.manifest import Entry
+from bondcell.jobs.point_hash import Hashes, HashIndex, point_hashes
+from bondcell.jobs.rows import ANALYTIC, REFERENCE, RELAXING_MODELS, Row, wanted_rows
+from bondcell.scenes.points import scene_cell
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene
@@ -16,14 +25,17 @@ if TYPE_CHECKING:
 JOB_SECONDS = 40.0
 """Work a job should have at most: far more than the second or two that its start costs."""
 
+MOST_JOBS = 100
+"""Jobs for the new points of a row at most: beyond, jobs grow."""
+
 WORTH_A_JOB = 3.0
 """Analytic work below this is done where the scene is collected: no job of its own [s]."""
 
 SECONDS_PER_ANALYTIC_POINT = 2e-5
 """Cost of one analytic model at one point, mean of quick and slow models [s]."""
 
-LARGEST_ANALYTIC_BATCH = 1_000_000
-"""Points of an analytic batch at most: bounds the memory of its job, some 50 bytes a model."""
+LARGEST_ANALYTIC_BATCH = 500_000
+"""Points of an analytic batch at most: bounds the memory of its job."""
 
 SECONDS_PER_GEOMETRY = 0.5
 """Cost of meshing and assembling the finite element ladder of one geometry [s]."""
@@ -31,104 +43,188 @@ SECONDS_PER_GEOMETRY = 0.5
 SECONDS_PER_STATE = 0.015
 """Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
 
+LARGEST_REFERENCE_BATCH = 20_000
+"""Points of one geometry that are kept together: bounds the memory of its job."""
+
 SECONDS_PER_RELAXING_MODEL = 0.02
 """Cost of one series of one model under one convention [s], some more of each point."""
 
 SECONDS_PER_RELAXING_STATE = 0.4
 """Cost of the reference's reduced model of one point and convention [s]."""
 
-GEOMETRY_AXES = (*GEOMETRY, "gap_ratio", "radius_ratio")
-"""Axes that change the mesh; along all others only the moduli change."""
+Positions = NDArray[np.int64]
 
 
-def plan(scene: Scene) -> list[Batch]:
-    """The batches of a scene's sweep, from the lengths of its axes alone.
+@dataclass(frozen=True)
+class Plan:
+    """Batches of a scene: those that are known and needed, and new ones.
+
+    Parameters
+    ----------
+    needed
+        Names of all batches that hold points of the scene, the new ones among them.
+    new
+        Batches that the manifest does not have.
+    """
+
+    needed: list[str] = field(default_factory=list)
+    new: list[Batch] = field(default_factory=list)
+
+    def names(self, kind: str) -> list[str]:
+        """Names of the needed batches whose methods begin with a word."""
+        return [name for name in self.needed if name.split("_")[0] == kind]
+
+
+def plan(
+    scene: Scene, known: Sequence[Entry] = (), is_there: Callable[[str], bool] = lambda _: False
+) -> Plan:
+    """The batches of a scene's points; only points that no batch has make new ones.
 
     Parameters
     ----------
     scene
-        Without a reference no finite element batch is planned; an analytic one only where there
-        is enough to do.
+        A checked scene.
+    known
+        Its manifest.
+    is_there
+        Whether the file of a batch is there and whole. A batch that is still to be computed counts
+        only if every row and point of it is wanted.
+
+    Returns
+    -------
+    Plan
+        The same for the same scene, manifest and files. Without a reference there is no finite
+        element batch; analytic points make a batch only where there is enough to do.
     """
-    sizes = {name: len(values) for name, values in scene.axes.items()}
-    batches = []
-    for load in scene.loads:
-        method = ANALYTIC if load == scene.load else f"{ANALYTIC}_{load}"
-        batches += analytic_batches(scene.points, len(models_with(scene, load)), method)
-    return batches + reference_batches(sizes, all_variants(scene)) + relaxation_batches(scene)
+    rows = wanted_rows(scene)
+    if not rows:
+        return Plan()
+    cell = scene_cell(scene)
+    hashes = point_hashes(cell)
+    coverage = _Coverage(rows, hashes)
+    coverage.add_all(known, is_there)
+    new = [
+        Batch(group, cell_at(cell, positions))
+        for group, left in coverage.missing()
+        for positions in _cut(scene, group, cell, left)
+    ]
+    needed = coverage.owners + [batch.name for batch in new]
+    found = {entry.name for entry in known}
+    return Plan(sorted(dict.fromkeys(needed)), [batch for batch in new if batch.name not in found])
 
 
-def relaxation_batches(scene: Scene) -> list[Batch]:
-    """Batches of relaxation, of models and of the reference under each load; a geometry is whole.
+class _Coverage:
+    """Which points of which rows some batch has."""
 
-    Parameters
-    ----------
-    scene
-        Without its prony block there are none.
-    """
-    block = scene.prony
-    if block is None:
-        return []
-    axes = {name: len(values) for name, values in scene.axes.items()}
-    geometries = prod(size for name, size in axes.items() if name in GEOMETRY_AXES)
-    series = len(block.cases()) * len(block.conventions)
-    ends = len({round(case.relaxing_share, 12) for case in block.cases()})
-    found = []
-    for load in scene.loads:
-        models = len(models_with(scene, load))
-        if models:
-            one = models * SECONDS_PER_RELAXING_MODEL * series
-            seconds = one * (1 + scene.points / 50) * (1 + block.checks / 10)
-            found += _split(f"{RELAXATION}_models_{load}", geometries, seconds)
-        if scene.reference is not None:
-            states = scene.points * ends * len(block.conventions)
-            seconds = states * SECONDS_PER_RELAXING_STATE * (1 + block.checks / 10)
-            found += _split(f"{RELAXATION}_fe_{load}", geometries, seconds)
-    return found
+    def __init__(self, rows: Sequence[Row], hashes: Hashes) -> None:
+        self._index = HashIndex(hashes)
+        is_first = self._index.find(hashes) == np.arange(len(hashes))
+        self._left = {row: is_first.copy() for row in rows}  # a point that comes twice counts once
+        self.owners: list[str] = []
+
+    def add_all(self, known: Sequence[Entry], is_there: Callable[[str], bool]) -> None:
+        """Take what is there, then what is planned already and overlaps with nothing."""
+        planned = []
+        for entry in known:
+            rows = [row for row in entry.rows if row in self._left]
+            at = self._index.find(entry.hashes) if rows else np.empty(0, dtype=np.int64)
+            inside = at[at >= 0]
+            if not any(self._left[row][inside].any() for row in rows):
+                continue
+            if is_there(entry.name):
+                self._take(entry, rows, inside)
+            elif len(rows) == len(entry.rows) and inside.size == at.size:
+                planned.append((entry, rows, inside))
+        for entry, rows, inside in planned:
+            if all(self._left[row][inside].all() for row in rows):
+                self._take(entry, rows, inside)
+
+    def missing(self) -> Iterator[tuple[tuple[Row, ...], Positions]]:
+        """Rows that go together, and the points that they lack."""
+        groups: dict[tuple[str, bytes], list[Row]] = {}
+        for row, left in self._left.items():
+            if left.any():
+                groups.setdefault((row.method, left.tobytes()), []).append(row)
+        for rows in groups.values():
+            yield tuple(rows), np.flatnonzero(self._left[rows[0]])
+
+    def _take(self, entry: Entry, rows: Iterable[Row], at: Positions) -> None:
+        for row in rows:
+            self._left[row][at] = False
+        self.owners.append(entry.name)
 
 
-def analytic_batches(points: int, models: int, method: str = ANALYTIC) -> list[Batch]:
-    """Batches of the analytic models; none where they are quicker than a job starts.
+def _cut(
+    scene: Scene, rows: tuple[Row, ...], cell: Cell, positions: Positions
+) -> Iterator[Positions]:
+    """Shares of the points, each a batch; strided, so that costly corners are spread."""
+    kind = rows[0].kind
+    if kind == ANALYTIC:
+        yield from analytic_parts(positions, len(rows))
+        return
+    geometries = [positions[group] for group in geometry_groups(cell_at(cell, positions))]
+    if kind == REFERENCE:
+        yield from reference_parts(geometries)
+    else:
+        yield from _parts(geometries, _relaxing_seconds(scene, rows, positions.size))
+
+
+def analytic_parts(positions: Positions, models: int) -> list[Positions]:
+    """Shares of analytic points; none where the models are quicker than a job starts.
 
     Examples
     --------
-    >>> analytic_batches(points=500, models=6)
+    >>> analytic_parts(np.arange(500), models=6)
     []
-    >>> [batch.name for batch in analytic_batches(points=500_000, models=6)]
-    ['analytic_1of2', 'analytic_2of2']
+    >>> [part.size for part in analytic_parts(np.arange(500_000), models=6)]
+    [250000, 250000]
     """
-    seconds = points * models * SECONDS_PER_ANALYTIC_POINT
+    seconds = positions.size * models * SECONDS_PER_ANALYTIC_POINT
     if seconds < WORTH_A_JOB:
         return []
-    return _split(method, points, seconds, at_least=ceil(points / LARGEST_ANALYTIC_BATCH))
+    most = ceil(positions.size / LARGEST_ANALYTIC_BATCH)
+    parts = max(most, min(MOST_JOBS, ceil(seconds / JOB_SECONDS)))
+    return [positions[part::parts] for part in range(parts)]
 
 
-def reference_batches(sizes: Mapping[str, int], variants: tuple[str, ...]) -> list[Batch]:
-    """Batches of the finite element reference; a geometry is never split.
+def reference_parts(geometries: Sequence[Positions]) -> list[Positions]:
+    """Shares of finite element points, those of a geometry together unless they are very many.
 
     Parameters
     ----------
-    sizes
-        Axis -> number of its values.
-    variants
-        Boundary conditions of the normal load and other loads, each solved for itself.
+    geometries
+        Positions of the points of each geometry.
 
     Examples
     --------
-    >>> batches = reference_batches({"gap_ratio": 40, "poisson_m": 50}, ("roller",))
-    >>> [batch.name for batch in batches]
-    ['fe_roller_1of2', 'fe_roller_2of2']
+    >>> parts = reference_parts([np.arange(50) + 50 * geometry for geometry in range(40)])
+    >>> [part.size for part in parts]
+    [1000, 1000]
     """
-    geometries = prod(size for name, size in sizes.items() if name in GEOMETRY_AXES)
-    states = prod(size for name, size in sizes.items() if name not in GEOMETRY_AXES)
-    seconds = geometries * (SECONDS_PER_GEOMETRY + states * SECONDS_PER_STATE)
-    return [
-        batch
-        for variant in variants
-        for batch in _split(f"{REFERENCE}_{variant}", geometries, seconds)
+    pieces = [
+        geometry[start : start + LARGEST_REFERENCE_BATCH]
+        for geometry in geometries
+        for start in range(0, geometry.size, LARGEST_REFERENCE_BATCH)
     ]
+    states = sum(geometry.size for geometry in geometries)
+    seconds = len(pieces) * SECONDS_PER_GEOMETRY + states * SECONDS_PER_STATE
+    return list(_parts(pieces, seconds))
 
 
-def _split(method: str, items: int, seconds: float, at_least: int = 1) -> list[Batch]:
-    parts = max(at_least, min(items, ceil(seconds / JOB_SECONDS)))
-    return [Batch(method, part, parts) for part in range(1, parts + 1)]
+def _parts(pieces: Sequence[Positions], seconds: float) -> Iterator[Positions]:
+    parts = max(1, min(len(pieces), MOST_JOBS, ceil(seconds / JOB_SECONDS)))
+    for part in range(parts):
+        yield np.sort(np.concatenate(pieces[part::parts]))
+
+
+def _relaxing_seconds(scene: Scene, rows: tuple[Row, ...], points: int) -> float:
+    """Cost of relaxation at points; checks come on top."""
+    block = scene.prony
+    assert block is not None
+    if rows[0].kind == RELAXING_MODELS:
+        series = len(block.cases()) * len(block.conventions)
+        seconds = len(rows) * SECONDS_PER_RELAXING_MODEL * series * (1 + points / 50)
+    else:
+        ends = len({round(case.relaxing_share, 12) for case in block.cases()})
+        seconds = points * ends * len(block.conventions) * SECONDS_PER_RELAXING_STATE
+    return seconds * (1 + block.checks / 10)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,10 +11,12 @@ import xarray as xr
 
 from bondcell import provenance
 from bondcell.jobs.analytic_batch import compute_analytic
-from bondcell.jobs.batch import ANALYTIC, REFERENCE, Batch
-from bondcell.jobs.batch_files import read_batch
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_files import read_batch, read_point_batch
+from bondcell.jobs.cell_points import cell_at
 from bondcell.jobs.collect_relaxation import collect_relaxation
-from bondcell.jobs.merge import merge
+from bondcell.jobs.merge import Canvas
+from bondcell.jobs.rows import REFERENCE, Row, analytic_rows
 from bondcell.outputs import DETAILS
 from bondcell.results.finite_axes import with_finite_axes
 from bondcell.results.names import models_with, reference_variants, result_names
@@ -41,7 +43,7 @@ def collect(
     study
         Its inputs; None if nothing is evaluated at points.
     analytic
-        Files of its analytic batches; without any the scene's models are evaluated here.
+        Files of its analytic batches; points that none of them has are evaluated here.
     reference
         Files of its finite element batches.
     load
@@ -59,15 +61,18 @@ def collect(
     if study is None:
         return xr.Dataset(attrs=attributes)
     load = load or scene.load
-    found = [read_batch(path, scene.models_digest) for path in analytic]
-    found += [read_batch(path, scene.reference_digest) for path in reference]
-    attributes |= machines(found)
-    batches = [batch for batch in found if batch.attrs["load"] == load]
-    models = models_with(scene, load)
-    if models and not any(set(models) & set(batch["model"].values) for batch in batches):
-        batches.append(compute_analytic(study, Batch(ANALYTIC), models, load, scene.contributions))
-    merged = merge(study, batches, labels(scene, load))
-    result = _with_models(merged, result_names(scene)).assign_attrs(attributes, load=load)
+    origins = []
+    canvas = Canvas(study, labels(scene, load))
+    for path in (*analytic, *reference):
+        batch = read_point_batch(path)
+        origins.append(xr.Dataset(attrs=batch.attrs))
+        if batch.attrs["load"] == load:
+            canvas.add(batch)
+    for quick in quick_batches(scene, canvas, load):
+        canvas.add(compute_analytic(quick))
+    attributes |= machines(origins)
+    result = _with_models(canvas.dataset(), result_names(scene))
+    result = result.assign_attrs(attributes, load=load)
     if relaxation:
         result = result.merge(collect_relaxation(scene, study, relaxation, load))
     return with_finite_axes(result)
@@ -110,6 +115,18 @@ def collect_convergence(scene: Scene, files: Iterable[Path]) -> dict[str, xr.Dat
     for path in files:
         groups["convergence"] = read_batch(path, scene.convergence_digest)
     return groups
+
+
+def quick_batches(scene: Scene, canvas: Canvas, load: str) -> Iterator[Batch]:
+    """Analytic rows at the points that no file has, too few to be worth a job."""
+    left: dict[bytes, list[Row]] = {}
+    for row in analytic_rows(scene, load):
+        missing = canvas.missing(row.model)
+        if missing.size:
+            left.setdefault(missing.tobytes(), []).append(row)
+    for positions, rows in left.items():
+        points = cell_at(canvas.cell, np.frombuffer(positions, dtype=np.int64))
+        yield Batch(tuple(rows), points)
 
 
 def labels(scene: Scene, load: str | None = None) -> dict[str, str]:

@@ -11,10 +11,11 @@ import xarray as xr
 
 from bondcell.errors import DataError, Violation
 from bondcell.inputs import cell_from_study
-from bondcell.jobs.batch_files import read_batch
-from bondcell.results.names import result_names
+from bondcell.jobs.batch_files import read_batch, read_point_batch
+from bondcell.jobs.merge import Places
+from bondcell.jobs.rows import REFERENCE, relaxation_rows
+from bondcell.results.names import reference_variants, result_names
 from bondcell.results.relaxation_names import (
-    INDEX,
     METHODS,
     VARIABLES,
     attributes,
@@ -54,11 +55,15 @@ def collect_relaxation(
         A file is damaged or was computed for other parameters, or points are missing.
     """
     # As many terms under every load: the groups of a file share their dimensions.
-    found = with_equal_terms([read_batch(path, scene.relaxation_digest) for path in files])
+    found = with_equal_terms([read_point_batch(path) for path in files])
     parts = [batch for batch in found if batch.attrs["load"] == load]
     cell, dims = cell_from_study(study)
+    places = Places(cell)
     shape = cell.shape
     names = result_names(scene)
+    known = {name: names.index(name) for name in scene.models}
+    for name, variant in reference_variants(scene, load).items():
+        known[f"{REFERENCE}_{variant}"] = names.index(name)
     first = parts[0]
     sizes = {**first.sizes, "model": len(names), "point": int(np.prod(shape))}
     present = [name for name in VARIABLES if name in first]
@@ -68,20 +73,32 @@ def collect_relaxation(
         )
         for name in present
     }
-    seen = np.zeros((sizes["model"], sizes["point"]), dtype=int)
+    seen = np.zeros((sizes["model"], sizes["point"]), dtype=bool)
+    asked = [row.model for row in relaxation_rows(scene, load)]
     for part in parts:
-        rows = np.array([names.index(str(name)) for name in part["model"].values])
-        where = part[INDEX].values
-        seen[np.ix_(rows, where)] += 1
+        labels = [str(name) for name in part["model"].values]
+        ours = [i for i, label in enumerate(labels) if label in known]
+        rows = np.array([known[labels[i]] for i in ours], dtype=int)
+        inside, where = places.of(part)
+        kept = {"model": ours, "point": np.flatnonzero(inside)}
+        seen[np.ix_(rows, where)] = True
         for name in present:
             chosen: list[Any] = [np.arange(sizes[dim]) for dim in VARIABLES[name]]
+            taken = part[name].isel({d: i for d, i in kept.items() if d in VARIABLES[name]})
             for dim, positions in (("model", rows), ("point", where)):
                 if dim in VARIABLES[name]:
                     chosen[VARIABLES[name].index(dim)] = positions
-            values[name][np.ix_(*chosen)] = part[name].values
-    if np.any(seen > 1) or not np.all(seen.any(axis=0)):
-        missing = f"{np.count_nonzero(~seen.any(axis=0))} of {sizes['point']} points missing"
-        raise DataError([Violation(f"relaxation under {load}", missing, "each point once")])
+            values[name][np.ix_(*chosen)] = taken.values
+    wanted = np.array([known[row] for row in asked])
+    lost = np.count_nonzero(~seen[np.ix_(wanted, places.first)].all(axis=0))
+    if lost:
+        missing = f"{lost} of {places.first.size} points missing"
+        raise DataError([Violation(f"relaxation under {load}", missing, "each point")])
+    if places.same is not None:
+        for name in present:
+            if "point" in VARIABLES[name]:
+                at = VARIABLES[name].index("point")
+                values[name] = np.take(values[name], places.same, axis=at)
     variables = {
         name: _on_axes(values[name], VARIABLES[name], dims, shape, attributes(name, load))
         for name in present

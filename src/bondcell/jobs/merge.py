@@ -9,12 +9,130 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from bondcell.cell import FloatArray
+from bondcell.cell import UNITS, Cell, FloatArray
 from bondcell.errors import DataError, Violation
 from bondcell.inputs import cell_from_study
+from bondcell.jobs.batch_files import batch_of
+from bondcell.jobs.point_hash import HashIndex, point_hashes
 from bondcell.outputs import DETAILS, OUTPUTS, PointResults
 
-INDEX = "point_index"
+
+class Canvas:
+    """The outputs over all methods and points of a study, filled batch by batch.
+
+    Points find their place by their hashes, so a batch may hold others besides, and a point that
+    two batches have is taken from the first.
+
+    Parameters
+    ----------
+    study
+        Inputs on the swept dimensions.
+    labels
+        Name in the batches -> name in the result's dimension ``model``, in the wanted order.
+    """
+
+    def __init__(self, study: xr.Dataset, labels: Mapping[str, str]) -> None:
+        self.study = study
+        self.labels = labels
+        self.cell, self.dims = cell_from_study(study)
+        self.places = Places(self.cell)
+        self.rows = {method: row for row, method in enumerate(labels)}
+        self.results = PointResults.empty((len(labels), self.places.points))
+        self.springs: dict[str, FloatArray] = {}
+        self.attributes: dict[str, dict[str, Any]] = {}
+        self.seen = np.zeros((len(labels), self.places.points), dtype=bool)
+
+    def add(self, batch: xr.Dataset) -> None:
+        """Put a batch's values where they belong."""
+        inside, where = self.places.of(batch)
+        known = set(OUTPUTS) | set(DETAILS) | set(UNITS)
+        for row, method in enumerate(batch["model"].values.tolist()):
+            if method not in self.rows:
+                continue
+            new = ~self.seen[self.rows[method], where]
+            at = self.rows[method], where[new]
+            self.seen[at] = True
+            for name in OUTPUTS:
+                getattr(self.results, name)[at] = batch[name].values[row, inside][new]
+            for name in DETAILS:
+                if name in batch:
+                    self.results.detail(name)[at] = batch[name].values[row, inside][new]
+        for name in sorted({str(name) for name in batch.data_vars} - known):
+            whole = self.springs.setdefault(name, np.full(self.seen.shape[1], np.nan))
+            whole[where] = batch[name].values[inside]
+        for key, variable in batch.data_vars.items():
+            self.attributes.setdefault(str(key), variable.attrs)
+
+    def missing(self, method: str) -> NDArray[np.int64]:
+        """Positions of the points that a method lacks."""
+        return self.places.first[~self.seen[self.rows[method], self.places.first]]
+
+    def dataset(self) -> xr.Dataset:
+        """The study with the outputs on ``(model, axes...)`` and the springs on ``(axes...)``.
+
+        Raises
+        ------
+        DataError
+            A point of a method is missing.
+        """
+        self._check_complete()
+        same, shape = self.places.same, self.cell.shape
+        names = list(self.labels.values())
+        merged = self.study.assign_coords(model=("model", names, {"long_name": "model"}))
+        found = {name: getattr(self.results, name) for name in OUTPUTS if names}
+        for name, values in (found | self.results.details).items():
+            whole = values if same is None else values[:, same]
+            unfolded = whole.reshape(-1, *shape)
+            merged[name] = (("model", *self.dims), unfolded, self.attributes[name])
+        for name in sorted(self.springs):
+            spring = self.springs[name] if same is None else self.springs[name][same]
+            merged[name] = (self.dims, spring.reshape(shape), self.attributes[name])
+        return merged
+
+    def _check_complete(self) -> None:
+        """Refuse a result in which a point is missing."""
+        points = self.places.first.size
+        lacking = {method: self.missing(method).size for method in self.rows}
+        wrong = [
+            Violation(method, f"{lost} of {points} points missing", "each point")
+            for method, lost in lacking.items()
+            if lost
+        ]
+        if wrong:
+            raise DataError(wrong)
+
+
+class Places:
+    """Where the points of batches stand in a study.
+
+    Parameters
+    ----------
+    cell
+        The study's points.
+
+    Attributes
+    ----------
+    points
+        Number of points.
+    first
+        Positions at which a point stands for the first time.
+    same
+        For each position that of the first equal point; None where all points differ.
+    """
+
+    def __init__(self, cell: Cell) -> None:
+        hashes = point_hashes(cell)
+        self._index = HashIndex(hashes)
+        self.points = len(hashes)
+        same = self._index.find(hashes)
+        everywhere = np.arange(self.points)
+        self.first = np.flatnonzero(same == everywhere)
+        self.same = None if self.first.size == self.points else same
+
+    def of(self, batch: xr.Dataset) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+        """Which points of a batch are in the study, and at which positions."""
+        at = self._index.find(batch_of(batch).hashes)
+        return at >= 0, at[at >= 0]
 
 
 def merge(
@@ -27,9 +145,9 @@ def merge(
     study
         Inputs on the swept dimensions.
     batches
-        Results on ``(model, point)`` with the points' positions in the raveled study, as
+        Results on ``(model, point)`` with the points' inputs, as
         `bondcell.jobs.batch_results.batch_dataset` gives them; what else is on ``(point,)`` are
-        springs.
+        springs. Other models and points than the wanted ones are passed over.
     labels
         Name in the batches -> name in the result's dimension ``model``, in the wanted order.
 
@@ -41,74 +159,9 @@ def merge(
     Raises
     ------
     DataError
-        A point of a method is missing, comes twice, or is none of the study's.
+        A point of a method is missing.
     """
-    cell, dims = cell_from_study(study)
-    canvas = _Canvas(list(labels), int(np.prod(cell.shape)))
+    canvas = Canvas(study, labels)
     for batch in batches:
         canvas.add(batch)
-    canvas.check_complete()
-    merged = study.assign_coords(model=("model", list(labels.values()), {"long_name": "model"}))
-    for name in OUTPUTS if labels else ():
-        values = getattr(canvas.results, name).reshape(-1, *cell.shape)
-        merged[name] = (("model", *dims), values, canvas.attributes[name])
-    for name, detail in canvas.results.details.items():
-        values = detail.reshape(-1, *cell.shape)
-        merged[name] = (("model", *dims), values, canvas.attributes[name])
-    for name in sorted(canvas.springs):
-        values = canvas.springs[name].reshape(cell.shape)
-        merged[name] = (dims, values, canvas.attributes[name])
-    return merged
-
-
-class _Canvas:
-    """Arrays over all methods and points, filled batch by batch."""
-
-    def __init__(self, methods: list[str], points: int) -> None:
-        self.rows = {method: row for row, method in enumerate(methods)}
-        self.results = PointResults.empty((len(methods), points))
-        self.springs: dict[str, FloatArray] = {}
-        self.attributes: dict[str, dict[str, Any]] = {}
-        self.seen = np.zeros((len(methods), points), dtype=np.int8)
-
-    def add(self, batch: xr.Dataset) -> None:
-        """Put a batch's values where they belong."""
-        where = self._positions(batch)
-        for method in batch["model"].values.tolist():
-            row = self._row(method)
-            self.seen[row, where] += 1
-            for name in OUTPUTS:
-                getattr(self.results, name)[row, where] = batch[name].sel(model=method).values
-            for name in DETAILS:
-                if name in batch:
-                    self.results.detail(name)[row, where] = batch[name].sel(model=method).values
-        for name in sorted({str(name) for name in batch.data_vars} - {*OUTPUTS, *DETAILS, INDEX}):
-            whole = self.springs.setdefault(name, np.full(self.seen.shape[1], np.nan))
-            whole[where] = batch[name].values
-        for key, variable in batch.data_vars.items():
-            self.attributes.setdefault(str(key), variable.attrs)
-
-    def check_complete(self) -> None:
-        """Refuse a result in which a point is missing or comes twice."""
-        wrong = [
-            Violation(method, f"{np.count_nonzero(seen != 1)} of {seen.size} points", "each once")
-            for method, seen in zip(self.rows, self.seen, strict=True)
-            if np.any(seen != 1)
-        ]
-        if wrong:
-            raise DataError(wrong)
-
-    def _positions(self, batch: xr.Dataset) -> NDArray[np.int64]:
-        where = batch[INDEX].values
-        outside = where[(where < 0) | (where >= self.seen.shape[1])]
-        if outside.size:
-            allowed = f"[0, {self.seen.shape[1]})"
-            raise DataError([Violation(INDEX, int(outside[0]), allowed)])
-        if np.any(np.diff(where) <= 0):
-            raise DataError([Violation(INDEX, "unordered", "ascending positions, each once")])
-        return where
-
-    def _row(self, method: str) -> int:
-        if method not in self.rows:
-            raise DataError([Violation("model", method, f"one of {', '.join(self.rows)}")])
-        return self.rows[method]
+    return canvas.dataset()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,9 @@ from bondcell.by_geometry import geometry_groups
 from bondcell.cell import Cell, FloatArray
 from bondcell.correspondence import correspondence
 from bondcell.inputs import cell_from_study
-from bondcell.jobs.batch import Batch, cell_at
+from bondcell.jobs.batch import Batch
+from bondcell.jobs.batch_results import about_batch
+from bondcell.jobs.rows import RELAXING_REFERENCE, Row
 from bondcell.models import MODELS
 from bondcell.outputs import FREQUENCY, TIME
 from bondcell.prony.chain import Chain
@@ -22,9 +24,7 @@ from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
 from bondcell.prony.shift import arrhenius, wlf
 from bondcell.relaxation import relaxation_series
-from bondcell.results.names import models_with, reference_variants
 from bondcell.results.relaxation_names import (
-    INDEX,
     TERM_VARIABLES,
     VARIABLES,
     attributes,
@@ -33,9 +33,6 @@ from bondcell.results.relaxation_names import (
 from bondcell.scenes.materials import Material
 from bondcell.scenes.prony_block import PronyBlock, SeriesCase
 from bondcell.status import Status
-
-if TYPE_CHECKING:
-    from bondcell.scenes.scene import Scene
 
 Progress = Callable[[int, int], None]
 
@@ -49,78 +46,61 @@ class Asked:
     options: Mapping[str, Any]
 
 
-def asked_models(scene: Scene, load: str) -> list[Asked]:
-    """The scene's analytic models under a load."""
-    return [Asked(name, name, {}) for name in models_with(scene, load)]
+def asked_of(rows: tuple[Row, ...]) -> list[Asked]:
+    """What the rows of a batch ask for."""
+    return [_asked_fe(row) if row.kind == RELAXING_REFERENCE else _asked(row) for row in rows]
 
 
-def asked_fe(scene: Scene, load: str) -> list[Asked]:
-    """The scene's reference under a load, once for each boundary condition."""
-    assert scene.reference is not None
-    tolerance = scene.reference.tolerance
-    return [
-        Asked(name, "fe", {"tolerance": tolerance} | ({"bc": variant} if load == "normal" else {}))
-        for name, variant in reference_variants(scene, load).items()
-    ]
+def _asked(row: Row) -> Asked:
+    return Asked(row.model, row.model, {})
+
+
+def _asked_fe(row: Row) -> Asked:
+    tolerance = dict(row.options)["tolerance"]
+    return Asked(row.model, "fe", {"tolerance": tolerance, **row.condition})
 
 
 def compute_relaxation(
-    study: xr.Dataset,
-    batch: Batch,
-    block: PronyBlock,
-    asked: list[Asked],
-    load: str,
-    progress: Progress | None = None,
+    batch: Batch, block: PronyBlock, progress: Progress | None = None
 ) -> xr.Dataset:
     """Every series under every convention at the batch's points, by every model.
 
     Parameters
     ----------
-    study
-        Inputs of the whole scene.
     batch
-        Which of its geometries.
+        Rows of relaxation.
     block
         What relaxes, and at which times.
-    asked
-        Models.
-    load
-        Load name.
     progress
         Called as ``progress(geometries_done, geometries)``.
 
     Returns
     -------
     xarray.Dataset
-        `VARIABLES` on ``(model, convention, series, point, ...)``.
+        `VARIABLES` on ``(model, convention, series, point, ...)``, and what
+        `bondcell.jobs.batch_results.about_batch` gives.
     """
-    whole, _ = cell_from_study(study)
-    positions = batch.points(whole)
-    cell = cell_at(whole, positions)
-    groups = [np.arange(positions.size)]
-    if any(MODELS[model.model].is_reference for model in asked):
-        groups = list(geometry_groups(cell))  # all that shares a mesh, one after the other
+    models = asked_of(batch.rows)
+    groups = [np.arange(len(batch.hashes))]
+    if any(MODELS[model.model].is_reference for model in models):
+        groups = list(geometry_groups(batch.points))  # all that shares a mesh, one after the other
     parts = []
     for done, group in enumerate(groups, start=1):
-        parts.append(_group(cell.take(group), positions[group], block, asked, load))
+        parts.append(_group(batch.points.take(group), block, models, batch.load))
         if progress:
             progress(done, len(groups))
-    return xr.concat(with_equal_terms(parts), "point", data_vars="minimal")
+    found = xr.concat(with_equal_terms(parts), "point", data_vars="minimal")
+    back = np.argsort(np.concatenate(groups))
+    return about_batch(batch).merge(found.isel(point=back), combine_attrs="override")
 
 
-def _group(
-    cell: Cell,
-    positions: NDArray[np.int64],
-    block: PronyBlock,
-    asked: list[Asked],
-    load: str,
-) -> xr.Dataset:
+def _group(cell: Cell, block: PronyBlock, asked: list[Asked], load: str) -> xr.Dataset:
     cases = block.cases()
     found = [
         [_relax(cell, block, case, convention, asked, load) for case in cases]
         for convention in block.conventions
     ]
-    return _dataset(found, block, cases, asked, positions, load)
+    return _dataset(found, block, cases, asked, load)
 
 
 def prony_of(block: PronyBlock, case: SeriesCase) -> Prony:
@@ -224,11 +204,10 @@ def _dataset(
     block: PronyBlock,
     cases: list[SeriesCase],
     asked: list[Asked],
-    positions: NDArray[np.int64],
     load: str,
 ) -> xr.Dataset:
     width = max(v.shape[-1] for rows in found for row in rows for v in row["K_k"])
-    variables: dict[str, Any] = {INDEX: ("point", positions)}
+    variables: dict[str, Any] = {}
     for name, dims in VARIABLES.items():
         if name not in found[0][0]:
             continue
@@ -240,7 +219,7 @@ def _dataset(
             values = values[0]
         variables[name] = (dims, values, attributes(name, load))
     coords = {"model": [model.label for model in asked], **series_coordinates(block, cases)}
-    return xr.Dataset(variables, coords, {"load": load})
+    return xr.Dataset(variables, coords)
 
 
 def _padded(values: Any, width: int) -> Any:

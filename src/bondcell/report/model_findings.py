@@ -12,7 +12,7 @@ import xarray as xr
 from bondcell.models import MODELS
 from bondcell.report.findings import Finding
 from bondcell.results.accuracy import signed_error
-from bondcell.results.view import axis_unit, axis_values, reference_names
+from bondcell.results.view import axis_unit, parameters_at, reference_names
 from bondcell.wording import at, model_name, model_phrase, number, percent
 
 POISSON = "poisson_m"
@@ -71,10 +71,10 @@ def _by_poisson(study: xr.Dataset, best: pd.Series, worst: pd.Series, reference:
 def _place(study: xr.Dataset, error: xr.DataArray, find: Callable[..., Any]) -> str:
     """An extreme error and where it is."""
     index = np.unravel_index(int(find(error.values)), error.shape)
+    place = {str(dim): int(position) for dim, position in zip(error.dims, index, strict=True)}
     places = [
-        at(str(axis), axis_values(study, axis)[position], axis_unit(study, str(axis)))
-        for axis, position in zip(error.dims, index, strict=True)
-        if error.sizes[axis] > 1
+        at(name, value, axis_unit(study, name))
+        for name, value in parameters_at(study, place).items()
     ]
     return f"{percent(error.values[index], sign=True)} (at {', '.join(places)})"
 

@@ -28,6 +28,7 @@ def setup_lines(scene: Scene) -> list[Line]:
     lines += [
         (f"{_label(name)}, swept", _axis(axis)) for name, axis in (given.get("sweep") or {}).items()
     ]
+    lines += list(_design(scene))
     if scene.models:
         lines.append(("models", listed(model_name(name) for name in scene.models)))
     lines += list(_reference(scene))
@@ -37,6 +38,23 @@ def setup_lines(scene: Scene) -> list[Line]:
     lines += list(_prony(scene))
     lines += list(_convergence(scene, given.get("convergence") or {}))
     return lines
+
+
+def _design(scene: Scene) -> Iterator[Line]:
+    design = scene.design
+    if design is None:
+        return
+    if design.table is not None:
+        names = listed(_label(name) for name in design.values())
+        yield "points", f"{design.count()} of the table {design.table}: {names}"
+        return
+    kind = {"sobol": "Sobol' sequence", "latin_hypercube": "Latin hypercube"}[design.kind or ""]
+    parts = f" in {len(design.points)} hypercubes" if len(design.points) > 1 else ""
+    yield "points", f"{design.count()}{parts}, {kind}, seed {design.seed}"
+    for name, span in design.spans().items():
+        spacing = "logarithmic" if span.spacing == "log" else "even"
+        ends = f"{_value(span.start)} to {_value(span.stop)}"
+        yield f"{_label(name)}, sampled", f"{ends}, {spacing}"
 
 
 def _reference(scene: Scene) -> Iterator[Line]:

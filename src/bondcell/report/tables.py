@@ -13,8 +13,10 @@ from bondcell.results.particle_influence import RATIO_AXIS, particles_negligible
 from bondcell.results.view import (
     axis_unit,
     axis_values,
+    is_scattered,
     load_name,
     model_names,
+    parameters,
     stiffness_unit,
     swept_axes,
 )
@@ -55,7 +57,7 @@ def accuracy_lines(study: xr.Dataset, table: pd.DataFrame) -> Table | None:
     """
     if table.empty:
         return None
-    axes = swept_axes(study)
+    axes = parameters(study)
     several = table["reference"].nunique() > 1
     lines = []
     for _, row in table.iterrows():
@@ -138,7 +140,7 @@ def value_lines(study: xr.Dataset) -> Table | None:
         A sweep's result.
     """
     axes = swept_axes(study)
-    if not model_names(study) or len(axes) > 2:
+    if not model_names(study) or len(axes) > 2 or is_scattered(study):
         return None
     unit = stiffness_unit(study)
     names = model_names(study)

@@ -14,8 +14,10 @@ from bondcell.results.view import (
     REFERENCE,
     analytic_names,
     axis_values,
+    grid_axes,
+    parameters,
+    parameters_at,
     reference_names,
-    swept_axes,
 )
 from bondcell.status import Status
 
@@ -59,7 +61,7 @@ def accuracy_table(study_result: xr.Dataset) -> pd.DataFrame:
         One row for each model, reference and group of points. ``group_axis`` is ``all``, or the
         name of an axis of at most five values, whose value is ``group_value``. Errors are relative,
         ``K / K_fe - 1``: ``error_min``, ``error_max`` (signed), ``abs_error_max``,
-        ``abs_error_median``; ``at_<axis>`` says where the largest is. ``points`` were compared,
+        ``abs_error_median``; ``at_<parameter>`` says where the largest is. ``points`` were compared,
         ``points_outside`` of them lie outside the model's valid range, ``abs_error_max_inside`` is
         the largest error of the others; ``left_out`` had no value, for the flags in
         ``left_out_by``. ``reference_error`` is the largest error estimate of the reference itself.
@@ -80,8 +82,8 @@ def accuracy_table(study_result: xr.Dataset) -> pd.DataFrame:
     >>> table.loc[0, ["error_min", "error_max", "abs_error_max", "at_gap"]].tolist()
     [-0.5, 0.10000000000000009, 0.5, 0.0001]
     """
-    axes = swept_axes(study_result)
-    columns = [*_LEADING, *(f"at_{axis}" for axis in axes), *_TRAILING]
+    axes = grid_axes(study_result)
+    columns = [*_LEADING, *(f"at_{name}" for name in parameters(study_result)), *_TRAILING]
     references = reference_names(study_result)
     if not references:
         return pd.DataFrame(columns=columns)
@@ -139,7 +141,8 @@ class _Points:
     def __init__(self, study: xr.Dataset) -> None:
         stiffness = study["stiffness"].transpose("model", ...)
         self.template = stiffness.isel(model=0, drop=True)
-        self.coords = {str(axis): axis_values(study, axis) for axis in self.template.dims}
+        self.study = study
+        self.dims = [str(dim) for dim in self.template.dims]
         self.position = {str(name): i for i, name in enumerate(study["model"].values)}
         self.value = np.asarray(stiffness.values, dtype=float)
         self.status = self._aligned(study, "status", Status.ok, Status.not_computed)
@@ -167,13 +170,13 @@ def _groups(
     """Position along an axis, or none for all points, and the name of the group."""
     yield {}, {"group_axis": "all", "group_value": np.nan}
     for axis, size in axes.items():
-        if size <= SMALL_AXIS and len(axes) > 1:
+        if size <= SMALL_AXIS and len(parameters(study)) > 1:
             for position, value in enumerate(axis_values(study, axis)):
                 yield {axis: position}, {"group_axis": axis, "group_value": value}
 
 
 def _row(points: _Points, model: str, reference: str, here: Mapping[str, int]) -> dict[str, Any]:
-    index = tuple(slice(here[a], here[a] + 1) if a in here else slice(None) for a in points.coords)
+    index = tuple(slice(here[a], here[a] + 1) if a in here else slice(None) for a in points.dims)
     this, that = points.position[model], points.position[reference]
     error = points.error(model, reference)[index]
     compared = np.isfinite(error)
@@ -194,8 +197,11 @@ def _row(points: _Points, model: str, reference: str, here: Mapping[str, int]) -
     }
     if compared.any():
         worst = np.unravel_index(int(np.nanargmax(size)), error.shape)
-        for (axis, values), part, position in zip(points.coords.items(), index, worst, strict=True):
-            row[f"at_{axis}"] = values[part][position]
+        place = {
+            dim: (part.start or 0) + int(position)
+            for dim, part, position in zip(points.dims, index, worst, strict=True)
+        }
+        row |= {f"at_{name}": value for name, value in parameters_at(points.study, place).items()}
     return row
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 from numpy.typing import NDArray
 
-from bondcell.results.view import axis_values, reference_names, swept_axes
+from bondcell.results.view import axis_values, is_scattered, reference_names, swept_axes
 
 RATIO_AXIS = "modulus_ratio"
 
@@ -54,7 +54,7 @@ def particles_negligible_from(study: xr.Dataset, tolerance: float = 0.01) -> pd.
     """
     axes = [axis for axis in swept_axes(study) if axis != RATIO_AXIS]
     columns = ["method", *axes, "ratio_from", "deviation_at_paper_ratio", "largest_ratio"]
-    if RATIO_AXIS not in swept_axes(study):
+    if RATIO_AXIS not in swept_axes(study) or is_scattered(study):
         return pd.DataFrame(columns=columns)
     ordered = study.sortby(RATIO_AXIS)
     ratio = axis_values(ordered, RATIO_AXIS).astype(float)

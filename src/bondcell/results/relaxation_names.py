@@ -10,9 +10,6 @@ import xarray as xr
 from bondcell.outputs import STIFFNESS_UNITS
 from bondcell.status import cf_flag_attributes
 
-INDEX = "point_index"
-"""Positions of a batch's points in the raveled study."""
-
 _SERIES = ("model", "convention", "series", "point")
 
 VARIABLES: dict[str, tuple[str, ...]] = {

@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from bondcell.outputs import WAYS
-from bondcell.results.view import reference_names
+from bondcell.results.view import parameters, reference_names
 from bondcell.status import Status
 
 FLAGS: Mapping[Status, str] = {
@@ -114,5 +114,6 @@ def _points(study: xr.Dataset, load: str, name: str) -> pd.DataFrame:
     frame["way"] = [WAYS[int(code)] for code in frame["way"]]
     frame.insert(0, "reference", name)
     frame.insert(0, "load", load)
-    kept = ["load", "reference", *axes, *columns, "condition"]
+    kept = ["load", "reference", *axes]
+    kept += [name for name in parameters(study) if name not in axes] + [*columns, "condition"]
     return frame[kept]

@@ -23,6 +23,7 @@ from bondcell.outputs import (
 from bondcell.results.finite_axes import PREFIX
 from bondcell.results.relaxation_names import METHODS, attributes
 from bondcell.results.relaxation_names import VARIABLES as RELAXATION_VARIABLES
+from bondcell.results.view import SAMPLE
 from bondcell.scenes.sweep import AXIS_NAMES
 from bondcell.specimen.names import AXES as SPECIMEN_AXES
 
@@ -101,7 +102,8 @@ def sweep_variables() -> Iterator[Variable]:
     for name, unit in UNITS.items():
         yield Variable(name, (SWEPT,), unit, LONG_NAMES[name])
     for name, meaning in AXIS_NAMES.items():
-        yield Variable(name, (name,), "1", meaning)
+        yield Variable(name, (SWEPT,), "1", meaning)
+    yield Variable(SAMPLE, (SAMPLE,), "1", "number of a design's point")
     reciprocal = "reciprocal of the axis, 0 for rigid particles: to be plotted over"
     yield Variable(f"{PREFIX}modulus_ratio", ("modulus_ratio",), "1", reciprocal)
     yield Variable("model", ("model",), NO_UNIT, "name in bondcell.MODELS, or fe_<bc>")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from bondcell.cell import UNITS
 from bondcell.models import MODELS
+
+SAMPLE = "sample"
+"""Dimension of points that are no grid; their parameters are coordinates along it."""
 
 REFERENCE = "fe"
 """Name of the reference in the dimension ``model``; others of its kind are called ``fe_<bc>``."""
@@ -58,6 +61,51 @@ def swept_axes(study: xr.Dataset) -> dict[str, int]:
         return {}
     sizes = study["stiffness"].sizes
     return {str(name): size for name, size in sizes.items() if name != "model" and size > 1}
+
+
+def is_scattered(study: xr.Dataset) -> bool:
+    """Whether the points are those of a design, no grid."""
+    return "stiffness" in study and SAMPLE in study["stiffness"].dims
+
+
+def parameters(study: xr.Dataset) -> list[str]:
+    """What varies from point to point: swept axes, and in place of samples their parameters.
+
+    Examples
+    --------
+    >>> samples = xr.Dataset(
+    ...     {"stiffness": (("model", "gap", "sample"), np.ones((1, 2, 2)))},
+    ...     {"gap": [1.0, 2.0], "sample": [0, 1], "poisson_m": ("sample", [0.1, 0.2])},
+    ... )
+    >>> parameters(samples)
+    ['gap', 'poisson_m']
+    """
+    axes = [axis for axis in swept_axes(study) if axis != SAMPLE]
+    if not is_scattered(study):
+        return axes
+    along = [str(name) for name, coord in study.coords.items() if coord.dims == (SAMPLE,)]
+    return axes + [name for name in along if name != SAMPLE]
+
+
+def grid_axes(study: xr.Dataset) -> dict[str, int]:
+    """Swept axes without the samples of a design."""
+    return {axis: size for axis, size in swept_axes(study).items() if axis != SAMPLE}
+
+
+def parameters_at(study: xr.Dataset, point: Mapping[str, int]) -> dict[str, Any]:
+    """Values of the parameters at a point.
+
+    Parameters
+    ----------
+    study
+        A sweep's result.
+    point
+        Position on each dimension.
+    """
+    return {
+        name: axis_values(study, name)[point[SAMPLE if name not in point else name]]
+        for name in parameters(study)
+    }
 
 
 def axis_values(study: xr.Dataset | xr.DataArray, axis: Hashable) -> NDArray[Any]:

@@ -10,11 +10,14 @@ import numpy as np
 from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell, FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.results.names import models_with
+from bondcell.scenes.design_checks import design_violations
 from bondcell.scenes.likely_units import unlikely
 from bondcell.scenes.names import covering
+from bondcell.scenes.points import shaped
 from bondcell.scenes.prony_checks import prony_violations
+from bondcell.scenes.ranges import MOST_POINTS, Span
 from bondcell.scenes.specimen_checks import specimen_violations
-from bondcell.scenes.sweep import DERIVED, MOST_POINTS, resolve_inputs
+from bondcell.scenes.sweep import DERIVED, resolve_inputs
 from bondcell.scenes.violations import KeyPath
 
 if TYPE_CHECKING:
@@ -45,21 +48,26 @@ def joint_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
     yield from _contradictory_axes(scene)
     wrong = {str(path[1]) for path in bad if path[0] in ("cell", "sweep") and len(path) > 1}
     wrong |= {DERIVED[name] for name in wrong if name in DERIVED}
-    incomplete = ("cell",) in bad or ("sweep",) in bad
+    incomplete = ("cell",) in bad or ("sweep",) in bad or any(path[0] == "design" for path in bad)
+    unsampled = scene.design is not None and not scene.design.is_complete
+    incomplete = incomplete or unsampled
     given = scene.cell.given()
     yield from _range_violations(given, "cell.")
-    asked = scene.has_points or scene.sweep or {("models",), ("reference",)} & set(bad)
+    spread = scene.sweep or scene.design
+    asked = scene.has_points or spread or {("models",), ("reference",)} & set(bad)
     if asked and not incomplete and scene.specimen is None:
-        axes = scene.axis_names
+        axes = (*scene.axis_names, *_designed(scene))
         supplied = {*given, *axes, *(DERIVED[name] for name in axes if name in DERIVED), *wrong}
         for name in REQUIRED:
             if name not in supplied:
                 yield _required(f"cell.{name}", name, "or swept")
     yield from _rigid_violations(scene, given, wrong, incomplete)
     if scene.points > MOST_POINTS:
-        yield Violation("sweep", f"{scene.points} points", f"at most {MOST_POINTS} points")
+        block = "sweep" if scene.sweep else "design"
+        yield Violation(block, f"{scene.points} points", f"at most {MOST_POINTS} points")
     else:
-        yield from _axis_violations(given, scene.axes)
+        yield from _axis_violations(given, scene)
+    yield from design_violations(scene, bad)
     yield from _case_violations(scene, given, wrong, incomplete)
     yield from prony_violations(scene, bad)
     yield from specimen_violations(scene)
@@ -69,6 +77,9 @@ def unit_warnings(scene: Scene) -> list[str]:
     """Values that are allowed, but whose unit was probably forgotten."""
     places: dict[str, Any] = {f"cell.{k}": v for k, v in scene.cell.given().items()}
     places |= {f"sweep.{name}": values for name, values in scene.axes.items()}
+    ends = {name: np.array([span.start, span.stop]) for name, span in _spans(scene).items()}
+    filled = ends or scene.samples
+    places |= {f"{_design_block(scene)}.{name}": values for name, values in filled.items()}
     if scene.convergence:
         for name, case in scene.convergence.cases.items():
             places |= {f"convergence.cases.{name}.{k}": v for k, v in case.given().items()}
@@ -78,8 +89,9 @@ def unit_warnings(scene: Scene) -> list[str]:
 
 def _request_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violation]:
     something = {("models",), ("reference",)} & set(bad)
-    if scene.sweep and not (scene.has_points or something):
-        yield Violation("models", None, "at least one model, or a reference, for the sweep")
+    if (scene.sweep or scene.design) and not (scene.has_points or something):
+        spread = "sweep" if scene.sweep else "design"
+        yield Violation("models", None, f"at least one model, or a reference, for the {spread}")
     elif not (scene.has_points or _other_work(scene, bad) or something):
         words = "something to compute: models, reference, convergence or specimen"
         yield Violation("models", None, words)
@@ -140,25 +152,43 @@ def _cases(scene: Scene) -> Mapping[str, Case]:
 
 
 def _contradictory_axes(scene: Scene) -> Iterator[Violation]:
-    axes = scene.axis_names
+    blocks = dict.fromkeys(scene.axis_names, "sweep")
+    for name in _designed(scene):
+        if name in blocks:
+            allowed = "another parameter: this one is an axis of the sweep"
+            yield Violation(f"{_design_block(scene)}.{name}", f"beside sweep.{name}", allowed)
+        blocks.setdefault(name, _design_block(scene))
     for ratio, name in DERIVED.items():
-        if ratio in axes and name in axes:
+        if ratio in blocks and name in blocks:
             allowed = f"one of the axes {name} and {ratio}, not both: both set {name}"
-            yield Violation(f"sweep.{ratio}", f"beside sweep.{name}", allowed)
+            field = f"{blocks[ratio]}.{ratio}"
+            yield Violation(field, f"beside {blocks[name]}.{name}", allowed)
+
+
+def _design_block(scene: Scene) -> str:
+    """Where a parameter of the design stands."""
+    return "design.table" if scene.design and scene.design.table else "design.ranges"
+
+
+def _designed(scene: Scene) -> tuple[str, ...]:
+    return scene.design.names if scene.design else ()
 
 
 def _rigid_violations(
     scene: Scene, given: Mapping[str, float], wrong: Collection[str], incomplete: bool
 ) -> Iterator[Violation]:
     """Rigid particles need a matrix of their own, and no other axis that sets their modulus."""
-    if scene.sweep is None or not scene.sweep.has_rigid_ratio:
+    swept = scene.sweep is not None and scene.sweep.has_rigid_ratio
+    tabled = scene.design is not None and scene.design.has_rigid_ratio
+    if not (swept or tabled):
         return
     if not ("young_m" in given or "young_m" in wrong or incomplete):
         yield _required("cell.young_m", "young_m", "beside the modulus ratio rigid")
+    block = "sweep" if swept else "design.table"
     for name in ("young_i", "young_j"):
-        if name in scene.axis_names:
+        if name in scene.axis_names or name in _designed(scene):
             allowed = f"finite ratios beside the axis {name}, which can say rigid itself"
-            yield Violation("sweep.modulus_ratio", "rigid", allowed)
+            yield Violation(f"{block}.modulus_ratio", "rigid", allowed)
 
 
 def _required(field: str, name: str, where: str) -> Violation:
@@ -166,15 +196,17 @@ def _required(field: str, name: str, where: str) -> Violation:
     return Violation(field, None, f"the {LONG_NAMES[name]}{unit}: required here {where}")
 
 
-def _axis_violations(
-    given: Mapping[str, float], axes: Mapping[str, FloatArray]
-) -> Iterator[Violation]:
-    usable = {name: axes[name] for name in axes if DERIVED.get(name) not in axes}
-    shaped = {
-        name: values.reshape([-1 if k == i else 1 for k in range(len(usable))])
-        for i, (name, values) in enumerate(usable.items())
-    }
-    inputs = resolve_inputs({**_NEUTRAL, **given}, shaped)
+def _axis_violations(given: Mapping[str, float], scene: Scene) -> Iterator[Violation]:
+    """What is wrong with swept values; of ranges that a design fills every corner must be good."""
+    ends = {name: np.array([s.start, s.stop]) for name, s in _spans(scene).items()}
+    axes, samples = {**ends, **scene.axes}, {} if ends else scene.samples
+    blocks = dict.fromkeys({**ends, **samples}, _design_block(scene))
+    blocks |= dict.fromkeys(scene.axes, "sweep")
+    usable = {name: axes[name] for name in axes if DERIVED.get(name) not in blocks}
+    rows = {n: samples[n] for n in samples if DERIVED.get(n) not in blocks and n not in usable}
+    on_axes = shaped(usable, rows)
+    usable |= rows
+    inputs = resolve_inputs({**_NEUTRAL, **given}, on_axes)
     ratios = {DERIVED[name]: name for name in usable if name in DERIVED}
     known = {*given, *usable, *ratios}
     found = list(_range_violations({k: v for k, v in inputs.items() if k in known}, ""))
@@ -182,22 +214,27 @@ def _axis_violations(
     for violation in found:
         name = violation.field
         if name in usable:
-            yield Violation(f"sweep.{name}", violation.value, violation.allowed)
+            yield Violation(f"{blocks[name]}.{name}", violation.value, violation.allowed)
         elif name not in ratios:
             yield Violation(f"cell.{name}", violation.value, violation.allowed)
         elif _BASE[name] not in wrong:
-            yield _ratio_violation(ratios[name], violation, inputs[name], shaped)
+            field = f"{blocks[ratios[name]]}.{ratios[name]}"
+            yield _ratio_violation(field, violation, inputs[name], on_axes[ratios[name]])
+
+
+def _spans(scene: Scene) -> Mapping[str, Span]:
+    return scene.design.spans() if scene.design else {}
 
 
 def _ratio_violation(
-    ratio: str, violation: Violation, derived: FloatArray, shaped: Mapping[str, FloatArray]
+    field: str, violation: Violation, derived: FloatArray, ratios: FloatArray
 ) -> Violation:
     """Blame the value of the ratio for the derived input that is out of range."""
     at = np.flatnonzero(derived.ravel() == violation.value)[0]
-    value = np.broadcast_to(shaped[ratio], derived.shape).ravel()[at]
+    value = np.broadcast_to(ratios, derived.shape).ravel()[at]
     allowed = f"one that puts {violation.field} in {violation.allowed}"
     gives = f"it gives {violation.field} = {violation.value:g}"
-    return Violation(f"sweep.{ratio}", float(value), f"{allowed}; {gives}")
+    return Violation(field, float(value), f"{allowed}; {gives}")
 
 
 def _case_violations(

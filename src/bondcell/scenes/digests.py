@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from bondcell.cell import Cell, FloatArray
-from bondcell.scenes.sweep import resolve_inputs
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene
@@ -20,45 +19,15 @@ def everything(scene: Scene) -> str:
     content = scene.model_dump(exclude_none=True)
     if scene.prony:
         content["prony"] = [content["prony"], _prony_content(scene)]
+    if scene.design:
+        rows = scene.design.values() if scene.design.table else {}
+        table = {name: _array(values) for name, values in rows.items()}
+        content["design"] = [content["design"], table]
     if scene.sweep:
         content["sweep"] = [(name, content["sweep"][name]) for name in scene.axes]
     if scene.convergence:
         content["convergence"]["cases"] = list(content["convergence"]["cases"].items())
     return _digest(content)
-
-
-def points(scene: Scene) -> str:
-    """Digest of axes and resolved inputs: a range and the list of its values are the same."""
-    axes = scene.axes
-    shaped = {
-        name: values.reshape([-1 if k == i else 1 for k in range(len(axes))])
-        for i, (name, values) in enumerate(axes.items())
-    }
-    return _digest(
-        {
-            "axes": [(name, _array(values)) for name, values in axes.items()],
-            "cell": _cell(Cell.from_values(**resolve_inputs(scene.cell.given(), shaped))),
-        }
-    )
-
-
-def models(scene: Scene) -> str:
-    """Digest of what the analytic results depend on."""
-    if not scene.models:
-        return _digest(None)
-    return _digest([points(scene), scene.loads, scene.models, scene.contributions])
-
-
-def reference(scene: Scene) -> str:
-    """Digest of what the reference's results depend on."""
-    if scene.reference is None:
-        return _digest(None)
-    return _digest([points(scene), scene.loads, scene.reference.model_dump()])
-
-
-def sweep(scene: Scene) -> str:
-    """Digest of what all results at the points depend on."""
-    return _digest([models(scene), reference(scene)])
 
 
 def convergence(scene: Scene) -> str:
@@ -71,9 +40,9 @@ def convergence(scene: Scene) -> str:
     return _digest([cases, ladders, block.repeats, scene.models])
 
 
-def relaxation(scene: Scene) -> str:
-    """Digest of what the relaxation of all bonds depends on."""
-    return _digest([sweep(scene), _prony_content(scene)])
+def prony(scene: Scene) -> str:
+    """Digest of what relaxation depends on besides the points, the models and their options."""
+    return _digest(_prony_content(scene))
 
 
 def specimen(scene: Scene) -> str:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from bondcell.scenes.blocks import Case, CellInputs, Convergence, Reference
+from bondcell.scenes.design import Design, Ranges
 from bondcell.scenes.fields import Block
 from bondcell.scenes.prony_block import BondTable, Methods, PronyBlock, Spectrum
+from bondcell.scenes.ranges import Range, Span
 from bondcell.scenes.specimen_block import (
     Ladders,
     SpecimenBlock,
     SpecimenFiniteStrain,
     SpecimenRelaxation,
 )
-from bondcell.scenes.sweep import Range, Sweep
+from bondcell.scenes.sweep import Sweep
 from bondcell.scenes.time_fields import FrequencySpan, Terms, TimeSpan
 from bondcell.scenes.violations import KeyPath
 
@@ -20,6 +22,7 @@ _BLOCKS: dict[str, type[Block]] = {
     "reference": Reference,
     "convergence": Convergence,
     "sweep": Sweep,
+    "design": Design,
     "prony": PronyBlock,
     "specimen": SpecimenBlock,
 }
@@ -59,4 +62,6 @@ def block_of(path: KeyPath) -> type[Block] | None:
         return _OF_PRONY[str(path[1])]
     if path[0] == "specimen":
         return _OF_SPECIMEN[str(path[-1])]
+    if path[0] == "design":
+        return Ranges if len(path) == 2 else Span
     return Range if path[0] == "sweep" else Case

@@ -14,6 +14,8 @@ from bondcell.cell import Cell, FloatArray
 from bondcell.errors import SceneError, Violation
 from bondcell.scenes import checks, digests
 from bondcell.scenes.blocks import CellInputs, Convergence, Reference
+from bondcell.scenes.design import Design
+from bondcell.scenes.design_checks import read_design
 from bondcell.scenes.fields import (
     NAME,
     NAME_RULE,
@@ -63,6 +65,11 @@ class Scene(Block):
     )
     cell: CellInputs = Field(default_factory=CellInputs, description="The bond cell.")
     sweep: Sweep | None = Field(None, description="Swept axes; left out: the one cell.")
+    design: Design | None = Field(
+        None,
+        description="Points that are no grid, at every point of the sweep if there is one; on the "
+        "dimension sample of the results.",
+    )
     models: Annotated[tuple[ModelName, ...], AfterValidator(distinct)] = Field(
         (),
         description="Analytic models to evaluate at every point.",
@@ -127,8 +134,9 @@ class Scene(Block):
 
     @property
     def swept_inputs(self) -> tuple[str, ...]:
-        """Inputs that the axes set, those behind ratios included."""
-        return tuple(dict.fromkeys(DERIVED.get(name, name) for name in self.axis_names))
+        """Inputs that axes and design set, those behind ratios included."""
+        names = (*self.axis_names, *(self.design.names if self.design else ()))
+        return tuple(dict.fromkeys(DERIVED.get(name, name) for name in names))
 
     @property
     def axes(self) -> dict[str, FloatArray]:
@@ -136,9 +144,15 @@ class Scene(Block):
         return self.sweep.axes() if self.sweep else {}
 
     @property
+    def samples(self) -> dict[str, FloatArray]:
+        """Parameters of the design: name -> SI values, shape (samples,)."""
+        return self.design.values() if self.design else {}
+
+    @property
     def points(self) -> int:
-        """Number of points of the sweep; 1 without a sweep."""
-        return self.sweep.points() if self.sweep else 1
+        """Number of points: of the sweep times those of the design, 1 without either."""
+        points = self.sweep.points() if self.sweep else 1
+        return points * (self.design.count() if self.design else 1)
 
     @property
     def has_points(self) -> bool:
@@ -186,24 +200,9 @@ class Scene(Block):
         return digests.everything(self)
 
     @property
-    def points_digest(self) -> str:
-        """Identity of the points: resolved inputs and axes."""
-        return digests.points(self)
-
-    @property
-    def models_digest(self) -> str:
-        """Identity of what the analytic results depend on."""
-        return digests.models(self)
-
-    @property
-    def reference_digest(self) -> str:
-        """Identity of what the reference's results depend on."""
-        return digests.reference(self)
-
-    @property
-    def relaxation_digest(self) -> str:
-        """Identity of what the relaxation of all bonds depends on."""
-        return digests.relaxation(self)
+    def prony_digest(self) -> str:
+        """Identity of what relaxation depends on besides points, models and their options."""
+        return digests.prony(self)
 
     @property
     def methods_digest(self) -> str:
@@ -214,11 +213,6 @@ class Scene(Block):
     def specimen_digest(self) -> str:
         """Identity of what the specimen's results depend on."""
         return digests.specimen(self)
-
-    @property
-    def sweep_digest(self) -> str:
-        """Identity of what all results at the points depend on; titles are not part of it."""
-        return digests.sweep(self)
 
     @property
     def convergence_digest(self) -> str:
@@ -250,8 +244,10 @@ def load_scene(path: str | Path) -> Scene:
         A value is so large or small that its unit was probably forgotten.
     """
     source = str(path)
-    content, folder = load_mapping(path, SceneError), Path(path).parent / FOLDER
-    scene = parse_scene(content, name=Path(path).stem, source=source, materials=folder)
+    content, folder = load_mapping(path, SceneError), Path(path).parent
+    scene = parse_scene(
+        content, name=Path(path).stem, source=source, materials=folder / FOLDER, tables=folder
+    )
     for warning in checks.unit_warnings(scene):
         warnings.warn(f"{source}: {warning}", UnitsWarning, stacklevel=2)
     return scene
@@ -262,6 +258,7 @@ def parse_scene(
     name: str = "scene",
     source: str | None = None,
     materials: Path | None = None,
+    tables: Path | None = None,
 ) -> Scene:
     """Check the content of a scene file.
 
@@ -275,6 +272,8 @@ def parse_scene(
         Where the content came from, for messages.
     materials
         Folder of the named materials; None: there are none.
+    tables
+        Folder of the tables of points; None: there are none.
 
     Raises
     ------
@@ -317,6 +316,7 @@ def parse_scene(
         scene = _salvage(data, set(bad))
     if scene is not None:
         violations += read_materials(scene.prony, materials)
+        violations += read_design(scene.design, tables)
         joint = checks.joint_violations(scene, bad)
         violations += [as_given(violation, data) for violation in joint]
     unique = {violation.field: violation for violation in reversed(violations)}
@@ -383,7 +383,7 @@ def _name_violations(name: str) -> list[Violation]:
     return [Violation("name", name, f"{NAME_RULE}, other than {', '.join(RESERVED)}")]
 
 
-_SALVAGED = (("cell",), ("sweep",), ("convergence",), ("specimen",))
+_SALVAGED = (("cell",), ("sweep",), ("design",), ("convergence",), ("specimen",))
 """Blocks of which the sound keys are kept where others are wrong."""
 
 

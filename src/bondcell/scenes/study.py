@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from bondcell.cell import LONG_NAMES, UNITS
+from bondcell.results.view import SAMPLE
 from bondcell.scenes.scene import Scene
 from bondcell.scenes.sweep import AXIS_NAMES, resolve_inputs
 
@@ -26,6 +27,7 @@ def build_study(scene: Scene) -> xr.Dataset:
         The dimensions are the swept axes in the scene's order, with ``units`` and ``long_name``.
         Every input of theory.md section 6 is there in SI units, defaults filled in, each on the
         axes it depends on: as the coordinate itself where it is an axis, else as a data variable.
+        A design's points are the dimension ``sample``, its parameters coordinates along it.
         Attributes: ``title``, ``scene``.
 
     Notes
@@ -61,7 +63,8 @@ def build_study(scene: Scene) -> xr.Dataset:
         name: xr.DataArray(values, dims=name, coords={name: values})
         for name, values in scene.axes.items()
     }
-    inputs = resolve_inputs(scene.cell.given(), axes)
+    samples = {name: xr.DataArray(values, dims=SAMPLE) for name, values in scene.samples.items()}
+    inputs = resolve_inputs(scene.cell.given(), {**axes, **samples})
     for particle_j, particle_i in (
         ("radius_j", "radius_i"),
         ("young_j", "young_i"),
@@ -71,10 +74,14 @@ def build_study(scene: Scene) -> xr.Dataset:
     if "cylinder_radius" not in inputs:
         inputs["cylinder_radius"] = np.maximum(inputs["radius_i"], inputs["radius_j"])
     coords = {name: (name, axis.values, _attributes(name)) for name, axis in axes.items()}
+    if samples:
+        number = {"units": "1", "long_name": "number of the sample"}
+        coords[SAMPLE] = (SAMPLE, np.arange(len(next(iter(samples.values())))), number)
+    coords |= {name: (SAMPLE, value.values, _attributes(name)) for name, value in samples.items()}
     study = xr.Dataset(coords=coords, attrs={"title": scene.title, "scene": scene.name})
     for name in UNITS:
-        if name not in axes:
-            study[name] = _variable(inputs[name], tuple(axes), _attributes(name))
+        if name not in coords:
+            study[name] = _variable(inputs[name], (*axes, SAMPLE), _attributes(name))
     return study
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import inf, prod
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import (
@@ -28,13 +28,15 @@ from bondcell.scenes.fields import (
     Ratio,
     describe_input,
     distinct,
-    whole_number_between,
 )
 from bondcell.scenes.quantities import NotAllowed
-from bondcell.scenes.spread import check_apart, spread
-
-MOST_POINTS = 10_000_000
-"""Largest number of points in a sweep."""
+from bondcell.scenes.ranges import (
+    LengthRange,
+    ModulusRange,
+    PoissonRange,
+    Range,
+    RatioRange,
+)
 
 DERIVED = {"modulus_ratio": "young_m", "gap_ratio": "gap", "radius_ratio": "radius_j"}
 """Axes that are ratios -> the input each of them sets."""
@@ -45,65 +47,6 @@ AXIS_NAMES = {
     "radius_ratio": "ratio of radii, particle j to particle i",
 }
 """Meaning of the ratios."""
-
-_start = Field(description="First value.")
-_stop = Field(description="Last value.")
-_points = Field(
-    description="Number of values, the ends included.",
-    json_schema_extra={"minimum": 2, "maximum": MOST_POINTS},
-)
-
-
-class Range(Block):
-    """Values from start to stop, both included."""
-
-    start: float = _start
-    stop: float = _stop
-    points: Annotated[int, whole_number_between(2, MOST_POINTS)] = _points
-    spacing: Literal["lin", "log"] = Field(
-        "lin", description="lin: equal steps; log: equal ratios (start and stop above 0)."
-    )
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if self.start == self.stop:
-            raise NotAllowed("a stop that differs from start; for one value write a list")
-        if self.spacing == "log" and not (self.start > 0 and self.stop > 0):
-            raise NotAllowed("start and stop above 0 where spacing is log")
-        check_apart(self.start, self.stop, self.points)
-        return self
-
-    def values(self) -> FloatArray:
-        """The values, the ends included; read-only."""
-        return spread(self.start, self.stop, self.points, self.spacing)
-
-
-class LengthRange(Range):
-    """Lengths from start to stop, both included."""
-
-    start: Length = _start
-    stop: Length = _stop
-
-
-class ModulusRange(Range):
-    """Moduli from start to stop, both included."""
-
-    start: Modulus = _start
-    stop: Modulus = _stop
-
-
-class PoissonRange(Range):
-    """Poisson's ratios from start to stop, both included."""
-
-    start: PoissonRatio = _start
-    stop: PoissonRatio = _stop
-
-
-class RatioRange(Range):
-    """Ratios from start to stop, both included."""
-
-    start: Ratio = _start
-    stop: Ratio = _stop
 
 
 def _form(value: Any) -> str | None:
@@ -150,12 +93,23 @@ ModulusRatioAxis = Annotated[
 
 
 def _axis(name: str) -> Any:
-    if name in DERIVED:
-        meaning = AXIS_NAMES[name][0].upper() + AXIS_NAMES[name][1:]
-        also = " In a list also rigid: rigid particles in the matrix of `cell`."
-        end = also if name == "modulus_ratio" else ""
-        return Field(None, description=f"{meaning} [1], (0, inf); sets {DERIVED[name]}.{end}")
-    return Field(None, description=describe_input(name))
+    also = " In a list also rigid: rigid particles in the matrix of `cell`."
+    end = also if name == "modulus_ratio" else ""
+    return Field(None, description=f"{describe_parameter(name)}{end}")
+
+
+def describe_parameter(name: str) -> str:
+    """Say what an input of the cell or a ratio is, with unit and range.
+
+    Examples
+    --------
+    >>> describe_parameter("gap_ratio")
+    'Ratio of gap to radius of particle i [1], (0, inf); sets gap.'
+    """
+    if name not in DERIVED:
+        return describe_input(name)
+    meaning = AXIS_NAMES[name][0].upper() + AXIS_NAMES[name][1:]
+    return f"{meaning} [1], (0, inf); sets {DERIVED[name]}."
 
 
 class Sweep(Block):

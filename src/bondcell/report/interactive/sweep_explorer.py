@@ -25,6 +25,7 @@ from bondcell.results.view import (
     analytic_names,
     axis_unit,
     axis_values,
+    is_scattered,
     model_names,
     reference_names,
     stiffness_unit,
@@ -67,7 +68,8 @@ def sweep_explorer(
     """
     names = list(dict.fromkeys(n for study in loads.values() for n in model_names(study)))
     first = next(iter(loads.values()))
-    if not names or not swept_axes(first) or not any(map(_has_values, loads.values())):
+    drawable = swept_axes(first) and not is_scattered(first)
+    if not names or not drawable or not any(map(_has_values, loads.values())):
         return None
     kept = thinned(first, len(names) * len(loads))
     studies = {load: study.isel(kept) for load, study in loads.items()}
