@@ -16,23 +16,51 @@ from bondcell.storage import replacing
 SERIES = ("K_inf", "K_k", "tau_k")
 
 
-def reduce_series(series: xr.Dataset, terms: int, window: tuple[float, float]) -> xr.Dataset:
-    """Replace each point's series by one of at most ``terms`` terms.
+def reduce_series(
+    series: xr.Dataset,
+    terms: int | None = None,
+    window: tuple[float, float] | None = None,
+    *,
+    error: float | None = None,
+) -> xr.Dataset:
+    """Replace each point's series by the best one of few terms over a window of time.
 
     Parameters
     ----------
     series
         What `bondcell.relaxation_series` gave.
     terms
-        Number of Maxwell elements that the bond may have.
+        Most Maxwell elements that the bond may have.
     window
         First and last time [s] of the simulation.
+    error
+        In place of `terms`: largest relative error of K(t) in the window; each point gets as few
+        terms as that takes.
 
     Returns
     -------
     xarray.Dataset
         The same variables; ``reduction_error(...)`` is the largest relative error of K(t) in the
         window, ``error_estimate`` includes it; attribute ``window``.
+
+    Examples
+    --------
+    >>> import bondcell
+    >>> study = xr.Dataset(
+    ...     {
+    ...         "radius_i": 7.5e-3,
+    ...         "gap": 5e-4,
+    ...         "young_i": 3e10,
+    ...         "poisson_i": 0.25,
+    ...         "young_m": 1.4e6,
+    ...         "poisson_m": 0.46,
+    ...     }
+    ... )
+    >>> prony = bondcell.Prony([0.3, 0.3, 0.2, 0.1], [1e-3, 1e-2, 1.0, 1e2])
+    >>> series = bondcell.relaxation_series(study, prony, "generatrix")
+    >>> few = reduce_series(series, window=(1e-4, 1e4), error=0.01)
+    >>> series.sizes["term"], few.sizes["term"], bool(few.reduction_error < 0.01)
+    (16, 4, True)
     """
     _check(series)
     dims = series.K_inf.dims
@@ -40,28 +68,28 @@ def reduce_series(series: xr.Dataset, terms: int, window: tuple[float, float]) -
     times = series.tau_k.transpose(*dims, "term").values
     shape = series.K_inf.shape
     K_inf = series.K_inf.values
-    found = np.full((*shape, terms), np.nan), np.full((*shape, terms), np.nan)
-    error = np.full(shape, np.nan)
+    found: dict[tuple[int, ...], Chain] = {}
+    missed = np.full(shape, np.nan)
     for point in np.ndindex(shape):
         own = np.isfinite(strengths[point])
         if not np.isfinite(K_inf[point]):
             continue
         chain = Chain(np.asarray(K_inf[point]), strengths[point][own], times[point][own])
-        few, error[point] = reduce_chain(chain, terms, window)
-        found[0][point][: few.count], found[1][point][: few.count] = few.strengths, few.times
+        found[point], missed[point] = reduce_chain(chain, terms, window, error)
+    width = max((chain.count for chain in found.values()), default=0)
+    few = np.full((2, *shape, width), np.nan)
+    for point, chain in found.items():
+        few[0][point][: chain.count], few[1][point][: chain.count] = chain.strengths, chain.times
+    about = {"units": "1", "long_name": "largest relative error of K(t) in the window"}
     reduced = series.drop_vars(["K_k", "tau_k"]).assign(
-        K_k=((*dims, "term"), found[0], series.K_k.attrs),
-        tau_k=((*dims, "term"), found[1], series.tau_k.attrs),
-        reduction_error=(
-            dims,
-            error,
-            {"units": "1", "long_name": "largest relative error of K(t) in the window"},
-        ),
+        K_k=((*dims, "term"), few[0], series.K_k.attrs),
+        tau_k=((*dims, "term"), few[1], series.tau_k.attrs),
+        reduction_error=(dims, missed, about),
     )
     if "error_estimate" in reduced:
-        reduced["error_estimate"] = (dims, reduced.error_estimate.values + error)
+        reduced["error_estimate"] = (dims, reduced.error_estimate.values + missed)
         reduced.error_estimate.attrs = series.error_estimate.attrs
-    return reduced.assign_attrs(window=[float(window[0]), float(window[1])])
+    return reduced.assign_attrs(window=[float(time) for time in window or ()])
 
 
 def write_bond_table(series: xr.Dataset, path: str | Path) -> Path:

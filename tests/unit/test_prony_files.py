@@ -119,6 +119,52 @@ def test_reduction_converges():
         reduce_chain(chain, 0, (1.0, 0.5))
 
 
+ASPHALT = [0.31288, 0.20212, 0.21377, 0.14498, 0.06803, 0.02679, 0.01078, 0.00428, 0.00264]
+
+
+@pytest.mark.parametrize("count", [2, 4, 6])
+def test_few_terms_are_the_best_there_are(count):
+    """The error of the best sum alternates at 2 n + 1 times, which no other sum's does."""
+    chain = Chain(np.array(1 - sum(ASPHALT)), np.array(ASPHALT), 10.0 ** np.arange(-5, 4))
+    window = (1e-6, 1e6)
+    few, error = reduce_chain(chain, count, window)
+    assert few.count == count
+    t = np.geomspace(*window, 3000)
+    misfit = few.relaxation(t) / chain.relaxation(t) - 1
+    assert np.abs(misfit).max() == pytest.approx(error, rel=1e-3)
+    reached = np.sign(misfit[np.abs(misfit) > 0.9 * error])
+    assert 1 + np.count_nonzero(np.diff(reached)) == 2 * count + 1
+    assert few.equilibrium == chain.equilibrium
+
+
+def test_as_few_terms_as_an_error_takes():
+    full, window = series(), (1e-4, 1e4)
+    few = bondcell.reduce_series(full, window=window, error=1e-3)
+    assert (few.reduction_error <= 1e-3).all()
+    fewer = bondcell.reduce_series(full, few.sizes["term"] - 1, window)
+    assert (fewer.reduction_error > 1e-3).any()
+    assert few.sizes["term"] < full.sizes["term"]
+    exact = bondcell.reduce_series(full, window=window, error=1e-14)
+    np.testing.assert_array_equal(exact.K_k, full.K_k)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"terms": 2}, "window = None"),
+        ({"window": (1.0, 2.0)}, "terms = None: .* a number of terms or an error"),
+        ({"terms": 2, "error": 0.1, "window": (1.0, 2.0)}, "either a number of terms or an error"),
+        ({"error": 0, "window": (1.0, 2.0)}, r"error = 0.*\(0, 1\)"),
+        ({"error": "1 %", "window": ("a", 2.0)}, r"error = '1 %'.*\n.*window"),
+        ({"terms": 2.5, "window": 3.0}, r"terms = 2.5.*\n.*window"),
+        ({"terms": 2, "window": (1.0, np.inf)}, "window"),
+    ],
+)
+def test_wrong_reductions_are_refused(arguments, message):
+    with pytest.raises(bondcell.InputError, match=message):
+        bondcell.reduce_series(series(), **arguments)
+
+
 def test_table_of_one_bond(tmp_path):
     one = bondcell.reduce_series(series(), 3, (1e-4, 1e4)).isel(gap=0)
     path = bondcell.write_bond_table(one, tmp_path / "bond.csv")

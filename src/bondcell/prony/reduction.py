@@ -5,39 +5,41 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.optimize import least_squares, nnls
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
+from bondcell.prony.best_exponentials import Curve, Exponentials, best_exponentials
 from bondcell.prony.chain import Chain, merged
 
-SAMPLES = 40
-"""Times a decade at which the curves are compared."""
+CHECKED = 80
+"""Times a decade at which the error that is told is measured."""
 
 
-def reduce_chain(chain: Chain, count: int, window: tuple[float, float]) -> tuple[Chain, float]:
-    """Fit a chain of at most ``count`` terms; what never relaxes stays as it is.
+def reduce_chain(
+    chain: Chain,
+    count: int | None,
+    window: tuple[float, float] | None,
+    error: float | None = None,
+) -> tuple[Chain, float]:
+    """Fit a chain of few terms; what never relaxes stays as it is.
 
     Parameters
     ----------
     chain
         A single chain.
     count
-        Largest number of terms.
+        Largest number of terms; None: as few as `error` allows.
     window
         First and last time of interest [s], both positive.
+    error
+        Largest relative error allowed; None where `count` is given.
 
     Returns
     -------
     Chain
         Terms with times around the window; those that relax before it are given up.
     float
-        Largest relative error of k(t) in the window, seen at `SAMPLES` times a decade.
-
-    Notes
-    -----
-    Strengths by non-negative least squares of the relative error, times by least squares around
-    that, from even ones in the logarithm.
+        Largest relative error of k(t) in the window, seen at `CHECKED` times a decade.
 
     Examples
     --------
@@ -45,37 +47,64 @@ def reduce_chain(chain: Chain, count: int, window: tuple[float, float]) -> tuple
     >>> few, error = reduce_chain(chain, 2, (1e-2, 1e3))
     >>> few.strengths.round(3), few.times.round(3), bool(error < 1e-4)
     (array([4., 2.]), array([ 1.005, 50.   ]), True)
+    >>> reduce_chain(chain, None, (1e-2, 1e3), error=0.01)[0].count
+    2
     """
-    low, high = _checked(count, window)
-    t = np.geomspace(low, high, int(np.ceil(SAMPLES * np.log10(high / low))) + 2)
-    wanted = chain.relaxation(t)
-    if chain.count <= count:
+    low, high = _checked(count, window, error)
+    if count is not None and chain.count <= count:
         return chain, 0.0
-    if not np.all(wanted > 0):
-        bad = float(t[wanted <= 0][0])
+    curve = Curve.of(chain, (low, high))
+    if not np.all(curve.values > 0):
+        bad = float(curve.times[curve.values <= 0][0])
         raise InputError([Violation("window", (low, high), f"times before {bad:g} s: K is zero")])
-    target = 1 - chain.equilibrium / wanted
-
-    def strengths(log_times: FloatArray) -> tuple[FloatArray, FloatArray]:
-        table = np.exp(-t[:, None] / np.exp(log_times)) / wanted[:, None]
-        found, _ = nnls(table, target)
-        return found, table @ found - target
-
-    edges = np.log(low), np.log(high)
-    start = np.linspace(edges[0], edges[1], count + 2)[1:-1]
-    reach = edges[0] - np.log(10.0), edges[1] + np.log(1e3)
-    best = least_squares(lambda logs: strengths(logs)[1], start, bounds=reach, x_scale=1.0).x
-    found, misfit = strengths(best)
-    few = Chain(chain.equilibrium, *merged(found, np.exp(best)))
-    return few, float(np.abs(misfit).max())
+    if count is not None:
+        fit = _of_size(curve, count)
+        return _chain_and_error(chain, fit, (low, high))
+    assert error is not None
+    known: Exponentials | None = None
+    for size in range(1, chain.count):
+        known = best_exponentials(curve, size, known, error)
+        if known.error <= error:
+            few, missed = _chain_and_error(chain, known, (low, high))
+            if missed <= error:
+                return few, missed
+    return chain, 0.0
 
 
-def _checked(count: Any, window: Any) -> tuple[float, float]:
+def _of_size(curve: Curve, count: int) -> Exponentials:
+    """The best of a size; of one less, where that helps to find it."""
+    fit = best_exponentials(curve, count)
+    if fit.is_best or count == 1:
+        return fit
+    fewer = best_exponentials(curve, count - 1)
+    more = best_exponentials(curve, count, fewer)
+    return min(fit, more, fewer, key=lambda own: own.error)
+
+
+def _chain_and_error(
+    chain: Chain, fit: Exponentials, window: tuple[float, float]
+) -> tuple[Chain, float]:
+    few = Chain(chain.equilibrium, *merged(fit.strengths, fit.times))
+    decades = np.log10(window[1] / window[0])
+    times: FloatArray = np.geomspace(*window, int(np.ceil(CHECKED * decades)) + 2)
+    return few, float(np.abs(few.relaxation(times) / chain.relaxation(times) - 1).max())
+
+
+def _checked(count: Any, window: Any, error: Any) -> tuple[float, float]:
     bad = []
-    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
+    if (count is None) == (error is None):
+        bad.append(Violation("terms", count, "either a number of terms or an error"))
+    elif error is not None:
+        number = isinstance(error, int | float | np.number) and not isinstance(error, bool)
+        if not (number and 0 < error < 1):
+            bad.append(Violation("error", error, "a number in (0, 1)"))
+    elif not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 1:
         bad.append(Violation("terms", count, "a whole number, at least 1"))
-    pair = np.asarray(window, dtype=float) if np.size(window) == 2 else np.array([np.nan, 0.0])
-    if not (np.isfinite(pair).all() and 0 < pair[0] < pair[1]):
+    try:
+        pair = np.asarray(window, dtype=float)
+    except (TypeError, ValueError):
+        pair = np.empty(0)
+    if pair.shape != (2,) or not (np.isfinite(pair).all() and 0 < pair[0] < pair[1]):
         bad.append(Violation("window", window, "two times [s], 0 < first < last, finite"))
     if bad:
         raise InputError(bad)

@@ -46,9 +46,9 @@ def bond_series(scene: Scene, study: xr.Dataset) -> xr.Dataset:
     dims = ["model", *AT, *relaxation_axes(study)]
     series = here[["K_inf", "K_k", "tau_k"]].assign(error_estimate=here["series_error"])
     series = series.transpose(*dims, "term").reset_coords(drop=True)
-    if block.bond.terms is not None:
+    if block.bond.terms is not None or block.bond.error is not None:
         window = block.times.start, block.times.stop
-        series = reduce_series(series, block.bond.terms, window)
+        series = reduce_series(series, block.bond.terms, window, error=block.bond.error)
         series = series.assign_attrs(window_start=window[0], window_end=window[1])
         del series.attrs["window"]
     used = int(np.isfinite(series["K_k"].values).any(axis=tuple(range(len(dims)))).sum())

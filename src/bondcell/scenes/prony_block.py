@@ -191,6 +191,17 @@ class BondTable(Block):
         description="Most terms of a series, fitted over `times`; left out: the exact series, "
         "however long.",
     )
+    error: Annotated[float, number_between(1e-9, 0.5)] | None = Field(
+        None,
+        description="In place of `terms`: largest relative error of K(t) over `times`; every "
+        "series gets as few terms as that takes.",
+    )
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.terms is not None and self.error is not None:
+            raise NotAllowed("either terms or error")
+        return self
 
 
 class PronyBlock(Block):
