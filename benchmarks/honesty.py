@@ -1,92 +1,91 @@
 """Is the reference's error estimate honest? Random cells against a finer mesh of higher order.
 
-    python benchmarks/honesty.py [--count 40] [--tolerance 1e-6] [--seed 20130612]
+    python benchmarks/honesty.py [--count 20] [--first 0] [--tolerance 1e-6] [--load shear]
+                                 [--json comparisons.jsonl]
+    python benchmarks/honesty.py --read comparisons.jsonl [more.jsonl ...]
 
 Prints, by load and region of the parameter space, the worst true error, the smallest estimate over
-true error (below one would be dishonest) and the 95 % quantile of that ratio.
+true error (below one would be dishonest) and the 95 % quantile of that ratio, see
+`bondcell.fem.honesty`. Samples of many cells are made in pieces: each cell has a seed of its own,
+so that ``--first`` goes on where another run ended, and ``--read`` puts the pieces together.
 """
 
 from __future__ import annotations
 
 import argparse
-import time
-from dataclasses import replace
+import json
+from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 
-from bondcell.cell import Cell
-from bondcell.fem.reference import solve
-from bondcell.fem.structured import find_load, solve_level
+from bondcell.fem.honesty import CASES, Comparison, compare, random_cell
 from bondcell.status import Status
 
-LOADS = (
-    ("normal", "roller"),
-    ("normal", "clamped"),
-    ("normal", "confined"),
-    ("shear", "roller"),
-    ("torsion", "roller"),
-    ("bending", "roller"),
-)
-ROUND_OFF = 1e-11
-"""True errors below it are not resolved."""
+SEED = 20130612
+Row = tuple[str, str, Comparison]
+"""Load, region and what was found."""
 
 
-def random_cell(rng: np.random.Generator) -> Cell:
-    """A cell of the range that the reference promises its accuracy in."""
-    poisson_m = rng.choice([0.0, 0.5, rng.uniform(0, 0.5), 0.5 - 10 ** rng.uniform(-7, -1)])
-    return Cell.from_values(
-        radius_i=1.0,
-        radius_j=rng.choice([1.0, rng.uniform(0.1, 1)]),
-        gap=10 ** rng.uniform(-4, 0.477),
-        young_i=10 ** rng.uniform(0, 8),
-        young_m=1.0,
-        poisson_i=rng.uniform(0, 0.45),
-        poisson_m=poisson_m,
-        cylinder_radius=rng.choice([1.0, rng.uniform(1, 2)]),
-    )
+def sample(case: int, first: int, count: int, tolerance: float) -> list[Row]:
+    """Compare some cells of one load."""
+    load, bc = CASES[case]
+    rows = []
+    for number in range(first, first + count):
+        cell = random_cell(np.random.default_rng([SEED, case, number]))
+        region = " ".join(
+            (
+                "thin" if cell.gap < 0.01 else "wide",
+                "nu>.49" if cell.poisson_m > 0.49 else "nu<=.49",
+            )
+        )
+        name = f"{load} {bc}" if load == "normal" else load
+        rows.append((name, region, compare(cell, load, bc, tolerance)))
+    return rows
 
 
-def compare(cell: Cell, load: str, bc: str, tolerance: float) -> tuple[int, float, float, float]:
-    """Flag, estimate, true error and seconds of one cell."""
-    started = time.perf_counter()
-    answer = solve(cell, load, bc, tolerance)
-    seconds = time.perf_counter() - started
-    usual = find_load(load, bc).grading
-    finer = replace(
-        usual, growth=3.0, largest=0.3, foot=usual.foot / 4, foot_growth=4, corner=usual.corner / 30
-    )
-    order = min(int(answer.order[0]) + 2, 12)
-    true = solve_level(cell, order, bc, load, grading=finer).stiffness
-    error = abs(answer.stiffness[0] / true - 1)
-    return int(answer.status[0]), float(answer.error_estimate[0]), float(error), seconds
+def print_table(rows: list[Row]) -> None:
+    """A line a load and region, a line a load, and one of all."""
+    groups: dict[str, list[Comparison]] = {}
+    for name, region, found in rows:
+        for group in (f"{name}, {region}", name, "all"):
+            groups.setdefault(group, []).append(found)
+    print(f"{'load, region':32}{'cells':>6}{'flags':>6}{'error':>9}{'least':>8}{'95 %':>8}{'s':>7}")
+    for group in sorted(groups, key=lambda name: (name == "all", name)):
+        own = groups[group]
+        ratios = np.array([found.ratio for found in own])
+        flags = sum(found.status != Status.ok for found in own)
+        worst = max(found.error for found in own)
+        seconds = np.median([found.seconds for found in own])
+        print(
+            f"{group:32}{len(own):6}{flags:6}{worst:9.1e}{ratios.min():8.2g}"
+            f"{np.quantile(ratios, 0.95):8.2g}{seconds:7.2f}"
+        )
 
 
 def main() -> None:
-    """Run the comparison and print the table."""
+    """Compare, or read comparisons, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--count", type=int, default=40)
+    parser.add_argument("--count", type=int, default=20, help="cells of each load")
+    parser.add_argument("--first", type=int, default=0, help="number of the first cell")
     parser.add_argument("--tolerance", type=float, default=1e-6)
-    parser.add_argument("--seed", type=int, default=20130612)
+    parser.add_argument("--load", choices=sorted({load for load, _ in CASES}))
+    parser.add_argument("--json", type=Path, help="append the comparisons to this file")
+    parser.add_argument("--read", type=Path, nargs="+", help="only put these files together")
     asked = parser.parse_args()
-    print("load, region, cells, not ok, worst error, least estimate/error, 95 % of it, median s")
-    for load, bc in LOADS:
-        rng = np.random.default_rng(asked.seed)
-        rows = []
-        for _ in range(asked.count):
-            cell = random_cell(rng)
-            nearly = float(cell.poisson_m) > 0.49
-            region = ("thin" if cell.gap < 0.01 else "wide", "nu>.49" if nearly else "nu<=.49")
-            rows.append((region, *compare(cell, load, bc, asked.tolerance)))
-        for region in sorted({row[0] for row in rows}):
-            own = [row[1:] for row in rows if row[0] == region]
-            flags, estimates, errors, seconds = map(np.array, zip(*own, strict=True))
-            ratio = estimates / np.maximum(errors, ROUND_OFF)
-            print(
-                f"{load} {bc}, {' '.join(region)}, {len(own)}, {(flags != Status.ok).sum()}, "
-                f"{errors.max():.1e}, {ratio.min():.2g}, {np.quantile(ratio, 0.95):.2g}, "
-                f"{np.median(seconds):.2f}",
-                flush=True,
-            )
+    rows: list[Row] = []
+    for path in asked.read or ():
+        for line in path.read_text().splitlines():
+            name, region, found = json.loads(line)
+            rows.append((name, region, Comparison(**found)))
+    wanted = [k for k, (load, _) in enumerate(CASES) if asked.load in (None, load)]
+    for case in () if asked.read else wanted:
+        own = sample(case, asked.first, asked.count, asked.tolerance)
+        rows += own
+        if asked.json:
+            with asked.json.open("a") as file:
+                file.writelines(json.dumps([a, b, asdict(found)]) + "\n" for a, b, found in own)
+    print_table(rows)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,5 @@
 """The structured reference against independent values, limits, bounds and its own convergence."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -10,9 +8,8 @@ from hypothesis import strategies as st
 from bondcell.cell import Cell
 from bondcell.errors import UnsupportedLoad
 from bondcell.fem.cell_mesh import Grading
-from bondcell.fem.ladder import estimate
-from bondcell.fem.reference import STIFF_CUT, STIFF_RATIO, solve
-from bondcell.fem.structured import LOADS, solve_level
+from bondcell.fem.reference import solve
+from bondcell.fem.structured import solve_level
 from bondcell.models import MODELS
 from bondcell.status import Status
 
@@ -191,46 +188,6 @@ def test_incompressible_film_has_the_lubrication_limit():
     assert errors[1] < 0.2 * errors[0] < 0.02
 
 
-def honesty_sample(count, seed):
-    """Error estimate over true error for random cells, the truth from a finer mesh and order."""
-    rng = np.random.default_rng(seed)
-    for _ in range(count):
-        case = cell(
-            gap=7.5e-3 * 10 ** rng.uniform(-3, 0.4),
-            young_i=1.4e6 * 10 ** rng.uniform(0, 8),
-            poisson_m=rng.uniform(0, 0.5),
-            radius_j=7.5e-3 * rng.choice([1.0, rng.uniform(0.2, 1)]),
-        )
-        answer = solve(case, tolerance=1e-5)
-        finer = Grading(growth=2, foot=5e-4)
-        fine = solve_level(case, int(answer.order[0]) + 2, grading=finer)
-        assert answer.status[0] == Status.ok
-        yield answer.error_estimate[0], abs(answer.stiffness[0] / fine.stiffness - 1)
-
-
-def test_estimate_is_honest_on_a_random_sample():
-    for estimated, true in honesty_sample(6, seed=2013):
-        assert true <= estimated
-
-
-@pytest.mark.slow
-def test_estimate_is_honest_on_a_large_random_sample():
-    for estimated, true in honesty_sample(100, seed=20130612):
-        assert true <= estimated
-
-
-def test_estimate_needs_two_rungs_and_distrusts_a_lucky_step():
-    assert estimate(np.array([[1.0]]), 20) == [np.inf]
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0]]), 20), [0.02])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0], [1.0, 1.0]]), 20), [0.02, 0.005])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.0, 1.0]]), 20), [5e-4])
-    np.testing.assert_allclose(estimate(np.array([[1.1, 1.01, 1.0]]), 20), [2e-3])
-
-
-def test_estimate_takes_steps_that_do_not_shrink_for_round_off():
-    np.testing.assert_allclose(estimate(np.array([[1.01, 1.02, 1.0]]), 20), [0.02])
-
-
 def test_tolerance_that_cannot_be_met_is_flagged():
     answer = solve(cell(), tolerance=1e-15)
     assert answer.status[0] == Status.tolerance_not_met
@@ -246,16 +203,3 @@ def test_confined_incompressible_cell_of_rigid_particles_has_no_stiffness():
 def test_unknown_supports_are_refused():
     with pytest.raises(UnsupportedLoad, match="glued"):
         solve(cell(), bc="glued")
-
-
-@pytest.mark.parametrize(("load", "bc"), [key for key in LOADS if key != ("normal", "confined")])
-@pytest.mark.parametrize("gap", [1e-3, 0.5])
-def test_cutting_the_cusp_early_costs_what_is_said(load, bc, gap):
-    entry = LOADS[load, bc]
-    early = replace(entry.grading, foot=STIFF_CUT, corner=0.0)
-    for poisson_m in (0.0, 0.49):
-        changes = {"gap": gap, "young_i": STIFF_RATIO, "young_m": 1.0, "poisson_m": poisson_m}
-        one = Cell.from_values(radius_i=1.0, poisson_i=0.25, **changes)
-        usual, cut = (solve_level(one, 8, bc, load, grading=g) for g in (None, early))
-        error = abs(cut.stiffness / usual.stiffness - 1)
-        assert entry.early_cut / 100 < error <= entry.early_cut

@@ -74,6 +74,46 @@ def line_tables(order: int, count: int) -> LineTables:
     return LineTables(value, slope, first, second)
 
 
+class ElementPoints:
+    """Geometry at the Gauss points of some elements.
+
+    Parameters
+    ----------
+    mapping
+        Curved geometry of all elements; its order is the displacement's.
+    elements
+        Which of them; all by default.
+
+    Attributes
+    ----------
+    place
+        Coordinates (r, z), shape (2, elements, points) [m].
+    jacobian, determinant
+        Of the mapping, shapes (2, 2, elements, points) [m] and (elements, points) [m2].
+    dx
+        Weights of the Gauss rule on the section, shape (elements, points) [m2].
+    """
+
+    def __init__(self, mapping: CurvedMapping, elements: slice = slice(None)) -> None:
+        self.order = mapping.order
+        self.along = self.order + EXTRA_POINTS
+        points, weights = gauss_line(self.along)
+        self.place, self.jacobian = mapping.on_grid(points, elements)
+        (rx, ry), (zx, zy) = self.jacobian
+        self.determinant = rx * zy - ry * zx
+        self.dx = np.abs(self.determinant) * np.outer(weights, weights).ravel()
+
+    @property
+    def shapes(self) -> int:
+        """Shape functions of an element."""
+        return (self.order + 1) ** 2
+
+    @property
+    def tables(self) -> LineTables:
+        """Shape functions of one direction."""
+        return line_tables(self.order, self.along)
+
+
 class CellBasis(Basis):
     """Basis of one displacement component at the Gauss points of every element.
 
@@ -88,32 +128,32 @@ class CellBasis(Basis):
 
     Notes
     -----
-    scikit-fem numbers the unknowns and provides the element. The tables of every shape function at
-    every point of every element, which only bilinear forms want, are made on demand.
+    scikit-fem numbers the unknowns and provides the element. Geometry at the points, and the tables
+    of every shape function there, which only bilinear forms want, are made on demand.
     """
 
     def __init__(self, mesh: MeshQuad, mapping: CurvedMapping, order: int) -> None:
-        self.points_along = order + EXTRA_POINTS
         AbstractBasis.__init__(
             self,
             mesh,
             _element(order),
             mapping,
-            quadrature=gauss_square(self.points_along),
+            quadrature=gauss_square(order + EXTRA_POINTS),
             disable_doflocs=True,
         )
         # Where unknowns lie is never asked for: most functions of this element have no place.
         self.doflocs = np.empty((2, 0))
         self.tind, self.nelems = None, mesh.nelements
-        self.place, self.jacobian = mapping.on_grid(gauss_line(self.points_along)[0])
-        (rx, ry), (zx, zy) = self.jacobian
-        self.determinant = rx * zy - ry * zx
-        self.dx = np.abs(self.determinant) * self.W
+
+    @cached_property
+    def points(self) -> ElementPoints:
+        """Geometry at the points of all elements."""
+        return ElementPoints(self.mapping)
 
     @property
-    def tables(self) -> LineTables:
-        """Shape functions of one direction."""
-        return line_tables(self.elem.p, self.points_along)
+    def dx(self) -> FloatArray:
+        """Weights of the Gauss rule, shape (elements, points) [m2]."""
+        return self.points.dx
 
     @cached_property
     def basis(self) -> list[tuple[Any, ...]]:
@@ -122,7 +162,7 @@ class CellBasis(Basis):
 
     def global_coordinates(self) -> DiscreteField:
         """Coordinates (r, z) of the Gauss points, shape (2, elements, points) [m]."""
-        return DiscreteField(self.place)
+        return DiscreteField(self.points.place)
 
 
 @lru_cache(maxsize=32)

@@ -83,7 +83,7 @@ class CellMesh:
     end_height
         Axial coordinate of end plane j [m].
     region
-        `half_cell.MATRIX`, `PARTICLE_I` or `PARTICLE_J` of each element.
+        `half_cell.MATRIX`, `PARTICLE_I` or `PARTICLE_J` of each element, ascending.
     carried
         Particle j and the thin elements beside its foot, which hardly strain when j moves.
     labels
@@ -99,6 +99,11 @@ class CellMesh:
     region: NDArray[np.int8]
     carried: NDArray[np.bool_]
     labels: dict[str, NDArray[np.int64]]
+
+    def elements(self, region: int) -> slice:
+        """The elements of a region, which follow each other."""
+        first, last = np.searchsorted(self.region, [region, region + 1])
+        return slice(int(first), int(last))
 
     def mapping(self, order: int) -> CurvedMapping:
         """Geometry interpolated at order ``order``."""
@@ -214,14 +219,14 @@ def _glue(halves: list[HalfCell], geometry: Geometry) -> CellMesh:
     offset = geometry.gap / 2
     number: dict[Key, int] = {}
     quads, patches, flips, regions, carried = [], [], [], [], []
-    for part in halves:
-        for place, (keys, patch, region) in enumerate(part.elements):
-            beside = place in part.beside_foot
-            carried.append(part.side == "j" and (beside or region != MATRIX))
-            quads.append([number.setdefault(key, len(number)) for key in keys])
-            patches.append(patch)
-            flips.append(-1.0 if part.side == "i" else 1.0)
-            regions.append(region)
+    placed = [(part, *element) for part in halves for element in enumerate(part.elements)]
+    for part, place, (keys, patch, region) in sorted(placed, key=lambda entry: entry[2][2]):
+        beside = place in part.beside_foot
+        carried.append(part.side == "j" and (beside or region != MATRIX))
+        quads.append([number.setdefault(key, len(number)) for key in keys])
+        patches.append(patch)
+        flips.append(-1.0 if part.side == "i" else 1.0)
+        regions.append(region)
     given = np.array(quads)
     oriented = orient(given)
     turned = tuple(

@@ -9,13 +9,11 @@ from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import CellMesh
-from bondcell.fem.element_matrices import cell_basis, element_matrices
-from bondcell.fem.half_cell import MATRIX, PARTICLE_I, PARTICLE_J
-from bondcell.fem.lifts import lifts, rigid_motions
+from bondcell.fem.cell_parts import CellParts
+from bondcell.fem.half_cell import PARTICLE_J
 from bondcell.fem.materials import Constants
-from bondcell.fem.numbering import Numbering
 from bondcell.fem.pencil import Pencil
-from bondcell.fem.substructure import Condensed, Substructure
+from bondcell.fem.substructure import Condensed
 from bondcell.fem.supports import Supports
 from bondcell.fem.symmetric_solve import eliminated
 
@@ -33,6 +31,8 @@ class CellOperators:
         Load and boundary condition.
     projected
         Mixed form (default) or displacement form; see `element_matrices`.
+    lag
+        How many orders the particles stay behind the matrix; see `particle_lag`.
 
     Notes
     -----
@@ -45,42 +45,21 @@ class CellOperators:
     """
 
     def __init__(
-        self, mesh: CellMesh, order: int, supports: Supports, projected: bool = True
+        self,
+        mesh: CellMesh,
+        order: int,
+        supports: Supports,
+        projected: bool = True,
+        lag: int = 0,
     ) -> None:
-        basis = cell_basis(mesh.topology, mesh.mapping(order), order)
-        numbering = Numbering(mesh, basis, len(supports.mode.components))
-        held = numbering.marked(supports.held)
-        rigid = rigid_motions(mesh, numbering, order, supports)
-        starts = lifts(mesh, numbering, supports, held, rigid)
-        matrices = element_matrices(basis, supports.mode, projected)
-        self.elements = int(mesh.topology.nelements)
-        self.dof = int(held.size - held.sum())
+        parts = CellParts(mesh, order, supports, projected, lag)
+        self.elements, self.dof = int(mesh.topology.nelements), parts.dof
         self.is_half = PARTICLE_J not in mesh.region
-        self.motions = rigid.shape[1]
-        particles = (PARTICLE_I,) if self.is_half else (PARTICLE_I, PARTICLE_J)
-        skeleton = {
-            part: np.unique(numbering.outer_dofs[mesh.region == part])
-            for part in (MATRIX, *particles)
-        }
-        shared = [np.intersect1d(skeleton[MATRIX], skeleton[part]) for part in particles]
-        interfaces = [dofs[~held[dofs]] for dofs in shared]
-
-        def part(region: int, interface: NDArray[np.int64], lift: FloatArray) -> Substructure:
-            rows = mesh.region == region
-            own = matrices.of(rows)
-            dofs = numbering.outer_dofs[rows]
-            both = np.tile(rigid, 2)
-            return Substructure(
-                own, numbering.inner, numbering.outer, dofs, interface, held, lift, both
-            )
-
-        self._matrix = part(MATRIX, np.concatenate(interfaces), starts)
-        self._followed = rigid[interfaces[0]]
-        self._particles = [
-            part(region, interface, np.zeros_like(starts))
-            for region, interface in zip(particles, interfaces, strict=True)
-        ]
-        self._layout(interfaces, pressures=min(1, matrices.pressures))
+        self.motions = parts.followed.shape[1]
+        self._matrix, self._particles = parts.matrix, parts.particles
+        self._followed = parts.followed
+        interfaces = [particle.interface for particle in parts.particles]
+        self._layout(interfaces, pressures=min(1, parts.matrix.matrices.pressures))
         self._systems: dict[float, Condensed] = {}
         self._particle_systems: dict[tuple[int, float], FloatArray] = {}
         self._joined: dict[tuple[tuple[float, ...], float], FloatArray] = {}

@@ -52,6 +52,12 @@ def lagrange_tables(order: int, at: FloatArray) -> tuple[FloatArray, FloatArray]
     return values, nodal.T @ values
 
 
+@lru_cache(maxsize=64)
+def _grid_tables(order: int, at: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """`lagrange_tables` at points that every mesh asks for."""
+    return lagrange_tables(order, np.array(at))
+
+
 class CurvedMapping(MappingIsoparametric):
     """Mapping of each reference square onto a curved quadrilateral.
 
@@ -86,13 +92,17 @@ class CurvedMapping(MappingIsoparametric):
         nodes = self.nodes[i] if tind is None else self.nodes[i][tind]
         return np.asarray(((nodes @ y) * x).sum(axis=1))
 
-    def on_grid(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def on_grid(
+        self, points: FloatArray, elements: slice = slice(None)
+    ) -> tuple[FloatArray, FloatArray]:
         """Coordinates and their derivatives at a tensor grid of reference points.
 
         Parameters
         ----------
         points
             Reference points of either direction, shape (q,).
+        elements
+            Elements wanted.
 
         Returns
         -------
@@ -101,9 +111,10 @@ class CurvedMapping(MappingIsoparametric):
         jacobian
             Coordinate by reference direction, shape (2, 2, elements, q^2) [m].
         """
-        value, slope = lagrange_tables(self.order, points)
-        shape = (*self.nodes.shape[:2], points.size**2)
-        along, across = self.nodes @ value, self.nodes @ slope
+        value, slope = _grid_tables(self.order, tuple(points))
+        nodes = self.nodes[:, elements]
+        shape = (*nodes.shape[:2], points.size**2)
+        along, across = nodes @ value, nodes @ slope
         place = (value.T @ along).reshape(shape)
         jacobian = [(slope.T @ along).reshape(shape), (value.T @ across).reshape(shape)]
         return place, np.stack(jacobian, axis=1)

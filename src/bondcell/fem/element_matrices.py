@@ -16,20 +16,19 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
-from bondcell.fem.cell_basis import CellBasis, cell_basis, gauss_line, gauss_square
+from bondcell.fem.cell_basis import ElementPoints, gauss_line
 from bondcell.fem.strain import D_R, D_Z, DEVIATOR, OVER_R, TRACE, FourierMode
 from bondcell.fem.tensor_sums import (
+    component_pairs,
     dilatations,
     pressure_line,
     pressure_pairs,
+    product_places,
     sum_products,
     sum_shapes,
 )
-
-__all__ = ["ElementMatrices", "cell_basis", "element_matrices", "gauss_square"]
 
 
 @dataclass(frozen=True)
@@ -54,7 +53,7 @@ class ElementMatrices:
     root_inner: FloatArray
     root_outer: FloatArray
 
-    def of(self, elements: NDArray[np.bool_]) -> ElementMatrices:
+    def of(self, elements: slice) -> ElementMatrices:
         """Those of some elements."""
         return ElementMatrices(
             *(
@@ -80,72 +79,69 @@ class ElementMatrices:
         return int(self.root_inner.shape[1])
 
 
-def element_matrices(basis: CellBasis, mode: FourierMode, projected: bool) -> ElementMatrices:
+def element_matrices(points: ElementPoints, mode: FourierMode, projected: bool) -> ElementMatrices:
     """Assemble both matrices of every element.
 
     Parameters
     ----------
-    basis
-        Scalar basis of one component, coordinates (r, z).
+    points
+        The elements' geometry at their Gauss points; its order is the displacement's.
     mode
         Fourier mode of the displacement.
     projected
         Project the dilatation on polynomials of degree below the order (mixed form), or keep it
         as it is (displacement form: an upper bound of the stiffness, but it locks near nu = 1/2).
     """
-    radius = basis.place[0]
-    measure = mode.angle_integral * basis.dx * radius
-    pulled = _pulled_back(basis, radius)
+    radius = points.place[0]
+    measure = mode.angle_integral * points.dx * radius
+    pulled = _pulled_back(points, radius)
     return ElementMatrices(
-        *_shear(pulled, measure, mode, basis), *_bulk_root(pulled, measure, mode, basis, projected)
+        *_shear(pulled, measure, mode, points),
+        *_bulk_root(pulled, measure, mode, points, projected),
     )
 
 
-def _pulled_back(basis: CellBasis, radius: FloatArray) -> FloatArray:
+def _pulled_back(points: ElementPoints, radius: FloatArray) -> FloatArray:
     """Coefficients of (value, d/dx, d/dy) in (value/r, d/dr, d/dz), shape (3, 3, elements, q)."""
-    (rx, ry), (zx, zy) = basis.jacobian
+    (rx, ry), (zx, zy) = points.jacobian
     result = np.zeros((3, 3, *radius.shape))
     result[OVER_R, 0] = 1 / radius
-    result[D_R, 1:] = np.array([zy, -zx]) / basis.determinant
-    result[D_Z, 1:] = np.array([-ry, rx]) / basis.determinant
+    result[D_R, 1:] = np.array([zy, -zx]) / points.determinant
+    result[D_Z, 1:] = np.array([-ry, rx]) / points.determinant
     return result
 
 
 def _shear(
-    pulled: FloatArray, measure: FloatArray, mode: FourierMode, basis: CellBasis
+    pulled: FloatArray, measure: FloatArray, mode: FourierMode, points: ElementPoints
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     components, elements = len(mode.components), pulled.shape[2]
-    order, q = basis.elem.p, basis.points_along
-    edge = 4 * order
-    inside = (order + 1) ** 2 - edge
+    order, q = points.order, points.along
     coefficients = 2 * np.einsum("cxs,st,dyt->cdxy", mode.strain, DEVIATOR, mode.strain)
     # Products of two entries of `pulled` at the points: by (x, y), then by the pair of kinds.
     products = (pulled[:, None, :, None] * (pulled * measure)[None, :, None, :]).reshape(9, -1)
-    inner = np.empty((elements, components, inside, components, inside))
-    link = np.empty((elements, components, edge, components, inside))
-    outer = np.empty((elements, components, edge, components, edge))
-    for c in range(components):
-        for d in range(c, components):
-            fields = (coefficients[c, d].reshape(9) @ products).reshape(3, 3, elements, q, q)
-            block = sum_products(fields, order)
-            inner[:, c, :, d] = block[:, edge:, edge:]
-            link[:, c, :, d] = block[:, :edge, edge:]
-            outer[:, c, :, d] = block[:, :edge, :edge]
-            if c != d:
-                inner[:, d, :, c] = block[:, edge:, edge:].transpose(0, 2, 1)
-                link[:, d, :, c] = block[:, edge:, :edge].transpose(0, 2, 1)
-                outer[:, d, :, c] = block[:, :edge, :edge].transpose(0, 2, 1)
-    i, o = components * inside, components * edge
-    return inner.reshape(-1, i, i), link.reshape(-1, o, i), outer.reshape(-1, o, o)
+    pairs = component_pairs(components)
+    sums = np.empty((elements, len(pairs), points.shapes, points.shapes))
+    for k, (c, d) in enumerate(pairs):
+        fields = (coefficients[c, d].reshape(9) @ products).reshape(3, 3, elements, q, q)
+        sum_products(fields, order, out=sums[:, k])
+    flat = sums.reshape(elements, -1)
+    inner, link, outer = (
+        flat.take(place, axis=1, mode="clip") for place in product_places(order, q, components)
+    )
+    return inner, link, outer
 
 
 def _bulk_root(
-    pulled: FloatArray, measure: FloatArray, mode: FourierMode, basis: CellBasis, projected: bool
+    pulled: FloatArray,
+    measure: FloatArray,
+    mode: FourierMode,
+    points: ElementPoints,
+    projected: bool,
 ) -> tuple[FloatArray, FloatArray]:
     components, elements = len(mode.components), len(measure)
     trace = np.einsum("cxs,s->cx", mode.strain, TRACE)
-    edge = 4 * basis.elem.p
-    inside = basis.Nbfun - edge
+    edge = 4 * points.order
+    inside = points.shapes - edge
     if not trace.any():
         return np.zeros((elements, 0, components * inside)), np.zeros(
             (elements, 0, components * edge)
@@ -153,17 +149,17 @@ def _bulk_root(
     dilatation = np.tensordot(trace, pulled, 1)
     make = _projected_roots if projected else _plain_roots
     inner, outer = [], []
-    for root in make(dilatation, measure, basis):
+    for root in make(dilatation, measure, points):
         outer.append(root[:, :, :edge])
         inner.append(root[:, :, edge:])
     return np.concatenate(inner, axis=2), np.concatenate(outer, axis=2)
 
 
 def _projected_roots(
-    dilatation: FloatArray, measure: FloatArray, basis: CellBasis
+    dilatation: FloatArray, measure: FloatArray, points: ElementPoints
 ) -> list[FloatArray]:
     """``R`` of each component, with pressures made orthonormal by their Gram matrix's factor."""
-    order, q = basis.elem.p, basis.points_along
+    order, q = points.order, points.along
     table = _pressure_table(order, q)
     gram = table.T @ (measure[:, :, None] * table)
     orthonormal = np.linalg.inv(np.linalg.cholesky(gram))
@@ -173,16 +169,18 @@ def _projected_roots(
     ]
 
 
-def _plain_roots(dilatation: FloatArray, measure: FloatArray, basis: CellBasis) -> list[FloatArray]:
+def _plain_roots(
+    dilatation: FloatArray, measure: FloatArray, points: ElementPoints
+) -> list[FloatArray]:
     """``R`` of each component, with a pressure for every quadrature point, constant first."""
-    q = basis.points_along
+    q = points.along
     weight = np.sqrt(measure)
     rows = _householder(weight / np.linalg.norm(weight, axis=1, keepdims=True))
     roots = []
     for component in dilatation:
         fields = (component * weight)[:, :, None] * rows
-        root = sum_shapes(fields.reshape(3, -1, q, q), basis.tables)
-        roots.append(root.reshape(len(weight), -1, basis.Nbfun))
+        root = sum_shapes(fields.reshape(3, -1, q, q), points.tables)
+        roots.append(root.reshape(len(weight), -1, points.shapes))
     return roots
 
 

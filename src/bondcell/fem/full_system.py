@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from bondcell.cell import Cell, FloatArray
+from bondcell.fem.cell_basis import cell_basis
 from bondcell.fem.cell_mesh import CellMesh, build_cell_mesh
-from bondcell.fem.element_matrices import ElementMatrices, cell_basis, element_matrices
+from bondcell.fem.element_matrices import ElementMatrices, element_matrices
 from bondcell.fem.half_cell import MATRIX, PARTICLE_I
 from bondcell.fem.lifts import lifts, rigid_motions
 from bondcell.fem.materials import Constants, Materials
@@ -99,7 +100,7 @@ def _assemble(
     held = numbering.marked(supports.held)
     rigid = rigid_motions(mesh, numbering, order, supports)
     lift = lifts(mesh, numbering, supports, held, rigid)[:, motion]
-    matrices = element_matrices(basis, supports.mode, projected=True)
+    matrices = element_matrices(basis.points, supports.mode, projected=True)
     dofs = _element_dofs(numbering)
     own = np.zeros_like(matrices.shear)
     for region in np.unique(mesh.region[mesh.region != MATRIX]):

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
+from bondcell.fem.particle_lag import particle_lag
+from bondcell.fem.scouts import Scouts
 from bondcell.fem.structured import CellSolver, Load
 
-ORDERS = (4, 6, 8, 10, 12, 14)
-"""Polynomial orders of the rungs."""
+LOWEST, HIGHEST = 4, 14
+"""Polynomial orders of the first and the last rung."""
 
 LARGEST = 16_000
 """Elements times order squared, a bound on unknowns and time: the ladder ends there."""
 
-FEW, LOOSE = 8, 1e-5
-"""Points up to which each climbs from the first rung, and tolerances where all do."""
+LOOSE = 1e-5
+"""Tolerances from which a ladder of many points begins at the lowest order too."""
+
+FEWEST = 3
+"""Rungs that an estimate needs."""
+
+LONGEST = 2
+"""Orders that one step may take while the estimate is far too large."""
 
 REDUCTION = 20
 """A reduced basis may add the tolerance over this."""
@@ -28,6 +39,12 @@ ROUND_OFF = 1e-11
 
 THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
 """Bounds of it where ``kappa/mu`` is large: at a gap of one radius, and in the thinnest films."""
+
+SAFETY = 3.0
+"""By how much the estimate exceeds the sum of the steps to come."""
+
+SLOWEST = 1.5
+"""Least rate of convergence an order that steps are taken to have."""
 
 
 class Ladder:
@@ -47,7 +64,7 @@ class Ladder:
     stiffness
         Of each point's last rung, NaN where it could not be solved, shape (points,).
     error_estimate, reduction_error
-        Relative; the second is part of the first. Infinite where fewer than two rungs were solved.
+        Relative; the second is part of the first. Infinite where too few rungs were solved.
     coupling
         Coupling force of the bending load [N/rad], else NaN.
     order, dof, way, seconds
@@ -69,56 +86,108 @@ class Ladder:
         self.reduction_error, self.seconds = np.zeros(count), np.zeros(count)
         self.order, self.dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
         self.way = np.zeros(count, dtype=np.int8)
-        round_off = _round_off(geometry, materials)
-        rungs = np.full((count, len(ORDERS)), np.nan)
-        clock = time.perf_counter()
+        self._materials, self._tolerance = materials, tolerance
+        self._round_off = _round_off(geometry, materials)
+        self._clock = time.perf_counter()
         mesh = build_cell_mesh(geometry, grading, half)
-        # Many points judge each other's steps, and the first rung is never the last one needed.
-        start = 1 if count > FEW and tolerance < LOOSE else 0
-        points = np.arange(count)
-        for number, order in enumerate(ORDERS[start:], start):
-            if not points.size or mesh.topology.nelements * order**2 > LARGEST:
-                break
-            solver = CellSolver(geometry, load, half, order, mesh)
-            sweep = solver.sweep(materials.take(points), tolerance / REDUCTION)
-            rungs[points, number] = self.stiffness[points] = sweep.stiffness
-            self.reduction_error[points] = sweep.reduction_error / np.abs(sweep.stiffness)
-            self.way[points], self.order[points] = sweep.way, order
-            self.dof[points], self.coupling[points] = solver.dof, sweep.coupling
-            discretisation = estimate(rungs[points, start : number + 1], load.rate)
-            discretisation = np.maximum(discretisation, round_off[points])
-            self.error_estimate[points] = discretisation + self.reduction_error[points]
-            now = time.perf_counter()
-            self.seconds[points] += (now - clock) / points.size
-            clock = now
-            solved = np.isfinite(self.stiffness[points])
-            points = points[solved & (self.error_estimate[points] > tolerance)]
+        lag = particle_lag(geometry, materials, load)
+        last = min(HIGHEST, int(np.sqrt(LARGEST / mesh.topology.nelements)))
+        if last >= LOWEST:
+            solver = partial(CellSolver, geometry, load, half, mesh=mesh, lag=lag)
+            self._climb(Scouts(materials), solver, load.rate, last)
+
+    def _climb(
+        self, scouts: Scouts, solver: Callable[[int], CellSolver], rate: float, last: int
+    ) -> None:
+        """Solve the scouts at rising orders, and the other points once their order is known."""
+        wanted = self._tolerance / scouts.caution
+        size = scouts.points.size
+        climbing, waiting, found = np.arange(size), scouts.others, np.full(size, np.nan)
+        hurried = bool(waiting.size) and self._tolerance < LOOSE
+        orders, rungs = [min(LOWEST + hurried, last)], np.empty((size, 0))
+        while True:
+            at = solver(orders[-1])
+            mine = scouts.points[climbing]
+            self._solve(at, orders[-1], mine)
+            rungs = np.column_stack([rungs, np.full(size, np.nan)])
+            rungs[climbing, -1] = self.stiffness[mine]
+            guess = estimate(rungs[climbing], orders, rate)
+            is_early = len(orders) < FEWEST
+            if not is_early:
+                found[climbing] = guess
+                self._judge(mine, guess)
+            goes_on = np.isfinite(self.stiffness[mine]) & (is_early | (guess > wanted))
+            climbing, guess = climbing[goes_on], guess[goes_on]
+            is_end = orders[-1] == last or not climbing.size
+            told = scouts.tell(found)[np.isin(scouts.others, waiting)]
+            ready = is_end | (told <= self._tolerance)
+            self._solve(at, orders[-1], waiting[ready])
+            self._judge(waiting[ready], told[ready])
+            waiting = waiting[~ready]
+            if is_end:
+                return
+            step = LONGEST if hurried and len(orders) == 1 else _step(guess, wanted, rate)
+            orders.append(min(orders[-1] + step, last))
+
+    def _solve(self, solver: CellSolver, order: int, points: NDArray[np.int64]) -> None:
+        """Solve points at one order."""
+        if not points.size:
+            return
+        sweep = solver.sweep(self._materials.take(points), self._tolerance / REDUCTION)
+        self.stiffness[points] = sweep.stiffness
+        self.reduction_error[points] = sweep.reduction_error / np.abs(sweep.stiffness)
+        self.way[points], self.order[points] = sweep.way, order
+        self.dof[points], self.coupling[points] = solver.dof, sweep.coupling
+        now = time.perf_counter()
+        self.seconds[points] += (now - self._clock) / points.size
+        self._clock = now
+
+    def _judge(self, points: NDArray[np.int64], estimates: FloatArray) -> None:
+        """Error estimates of solved points: of the discretisation, round-off and reduction."""
+        estimates = np.maximum(estimates, self._round_off[points])
+        self.error_estimate[points] = estimates + self.reduction_error[points]
 
 
-def estimate(rungs: FloatArray, rate: float) -> FloatArray:
+def estimate(rungs: FloatArray, orders: Sequence[int], rate: float) -> FloatArray:
     """Relative error of the last rung of each ladder; infinite while there are fewer than two.
 
-    Ladders converge exponentially: each rung comes at least ``rate`` times closer to the limit, but
-    for chance, which a factor of four allows for. A step that is small by chance, where the
-    sequence turns, is caught by the step before it; where there is none, by the largest step of all
-    points, which share a geometry and err alike.
+    Ladders converge exponentially, an order bringing them ``r`` times closer to the limit. With the
+    last two steps ``s_1``, ``s_2`` over ``p_1``, ``p_2`` orders::
+
+        error = 3 s_2 / (r^p_2 - 1),   r^p_1 = s_1 / s_2 within [3/2, rate]
+
+    A step that is small by chance, where the sequence turns, is caught by the step before it: the
+    error is no less than ``s_1 / rate^(p_1 + p_2)``.
 
     Parameters
     ----------
     rungs
         Stiffness by point and order, shape (points, rungs).
+    orders
+        Polynomial order of each rung, ascending.
     rate
-        See above.
+        How much closer to the limit one more order comes usually at least.
     """
     steps = np.abs(np.diff(rungs, axis=1)) / np.abs(rungs[:, -1:])
-    if steps.shape[1] == 0:
+    spans = np.diff(orders)
+    if not spans.size:
         return np.full(len(rungs), np.inf)
-    if steps.shape[1] == 1:
-        return np.maximum(steps[:, 0] * 4, np.nanmax(steps, initial=0.0)) / rate
-    last, before = steps[:, -1], steps[:, -2]
-    converging = np.maximum(last * 4 / rate, before * 2 / rate**2)
-    # Two steps alike are no convergence but round-off.
-    return np.where(last > before / 2, np.maximum(last, before), converging)
+    last = steps[:, -1]
+    if spans.size == 1:
+        return np.asarray(SAFETY * last / (SLOWEST ** spans[0] - 1))
+    before = steps[:, -2]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        seen = np.where(last > 0, before / last, np.inf) ** (1 / spans[-2])
+    seen = np.clip(seen, SLOWEST, rate)
+    return np.maximum(
+        SAFETY * last / (seen ** spans[-1] - 1), before / rate ** float(spans[-2] + spans[-1])
+    )
+
+
+def _step(guess: FloatArray, wanted: float, rate: float) -> int:
+    """Orders to climb next: fewer by one than the least demanding point seems to need."""
+    needed = np.ceil(np.log(guess.min() / wanted) / np.log(rate))
+    return int(np.clip(needed - 1, 1, LONGEST))
 
 
 def _round_off(geometry: Geometry, materials: Materials) -> FloatArray:

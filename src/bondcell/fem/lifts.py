@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
+from skfem.element import ElementQuadP
 
 from bondcell.cell import FloatArray
 from bondcell.fem.cell_mesh import CellMesh
@@ -44,13 +47,19 @@ def lifts(
 
 def _interpolate(mesh: CellMesh, numbering: Numbering, order: int, motion: Motion) -> FloatArray:
     """Coefficients of a motion, which the isoparametric space contains exactly."""
-    points = lobatto_points(order)
-    tensor = np.array([np.repeat(points, order + 1), np.tile(points, order + 1)])
-    element = numbering.basis.elem
-    shapes = np.array([element.lbasis(tensor, k)[0] for k in range(tensor.shape[1])])
     r, z = mesh.mapping(order).nodes.reshape(2, mesh.topology.nelements, -1)
     nodal = motion(r, z - mesh.end_height)
-    coefficients = np.linalg.solve(shapes.T, nodal.reshape(-1, shapes.shape[1]).T).T
+    coefficients = nodal @ _coefficients_of_nodes(order)
     result = np.zeros((numbering.components, numbering.count))
-    result[:, numbering.scalar_dofs] = coefficients.reshape(nodal.shape)
+    result[:, numbering.scalar_dofs] = coefficients
     return result.ravel()
+
+
+@lru_cache(maxsize=32)
+def _coefficients_of_nodes(order: int) -> FloatArray:
+    """Values at the Gauss-Lobatto nodes -> coefficients, shape (nodes, shapes)."""
+    points = lobatto_points(order)
+    tensor = np.array([np.repeat(points, order + 1), np.tile(points, order + 1)])
+    element = ElementQuadP(order)
+    shapes = np.array([element.lbasis(tensor, k)[0] for k in range(tensor.shape[1])])
+    return np.asarray(np.linalg.inv(shapes))

@@ -15,21 +15,35 @@ from bondcell.fem.structured import Load, find_load, geometry_of
 from bondcell.fem.threads import one_thread
 from bondcell.status import Status
 
-SOFT_RATIO = 0.3
+SOFT_RATIO = 1.0
 """Modulus ratio below which the cusp beside a particle is followed farther."""
 
 STIFF_RATIO, STIFF_CUT = 100.0, 0.04
 """A modulus ratio, and where the cusp beside particles about as stiff may be cut early [radii]."""
 
-CUT_SHARE = 0.2
+WIDE_CUT = 2 * STIFF_CUT
+"""Where it may be cut beside stiffer ones [radii]."""
+
+CUT_SHARE = 0.3
 """Largest part of the tolerance that an early cut may cost."""
 
 FOLLOWED_CUT = 1e-4
 """Loads whose usual cut is below this hold the side: there the cusp counts at any ratio."""
 
-SOFT_CUT, SMALLEST_CUT = 1e-2, 1e-6
+SOFT_CUT, SMALLEST_CUT = 2e-3, 1e-6
 """Where the cusp beside a soft particle is cut, over its modulus ratio, and the least [radii]."""
 
+CUT_RATE = 1.5
+"""Power of a cut, over the modulus ratio, with which its error grows."""
+
+HELD_REACH = 0.1, 3.0
+"""Where the side is held, the modulus ratio matters between these cuts over it alone."""
+
+LEAST_CUT_ERROR = 1e-11
+"""Relative error of what refinement leaves out elsewhere, at singular corners."""
+
+RESOLVED = 1e-2
+"""Height at which a cusp beside a soft particle stops to matter, over the modulus ratio [radii]."""
 
 TIGHT = 0.499
 """Poisson's ratio of the matrix from which a cusp that is not resolved makes the value unknown."""
@@ -100,10 +114,9 @@ def solve(
             at = np.flatnonzero((half == is_half) & mine & ~blocked)
             if at.size:
                 own = materials.take(at)
-                ladder = Ladder(geometry, entry, bool(is_half), grading, own, tolerance)
-                ladder.error_estimate += _unresolved_cusp(geometry, own)
-                is_early = grading.foot == STIFF_CUT
-                cut = _early_cut(geometry, own, entry) if is_early else entry.usual_cut
+                cut = _cut_error(geometry, own, entry, grading)
+                left = tolerance - min(float(cut.min()), tolerance / 2)
+                ladder = Ladder(geometry, entry, bool(is_half), grading, own, left)
                 ladder.error_estimate += cut
                 _report(ladder, at, tolerance, answer)
     return answer
@@ -156,10 +169,29 @@ def _softness(geometry: Geometry, materials: Materials) -> FloatArray:
     return np.where(_touches_side(geometry), materials.ratios, np.inf).min(axis=1)
 
 
-def _early_cut(geometry: Geometry, materials: Materials, load: Load) -> FloatArray:
-    """Relative error of cutting the cusp at `STIFF_CUT`: it falls with the ratio squared."""
+def _cut_error(
+    geometry: Geometry, materials: Materials, load: Load, grading: Grading
+) -> FloatArray:
+    """Relative error of cutting the cusp where ``grading`` does."""
+    unresolved = _unresolved_cusp(geometry, materials)
+    if grading.foot in (STIFF_CUT, WIDE_CUT):
+        return _early_cut(geometry, materials, load, grading.foot)
+    if not _touches_side(geometry).any():
+        return unresolved + LEAST_CUT_ERROR
     with np.errstate(divide="ignore"):
-        return load.early_cut * (STIFF_RATIO / _softness(geometry, materials)) ** 2
+        reach = grading.foot / (load.grading.foot * _softness(geometry, materials))
+    if load.grading.foot <= FOLLOWED_CUT:
+        reach = np.clip(reach, *HELD_REACH)
+    return np.asarray(unresolved + LEAST_CUT_ERROR + load.usual_cut * reach**CUT_RATE)
+
+
+def _early_cut(
+    geometry: Geometry, materials: Materials, load: Load, cut: float = STIFF_CUT
+) -> FloatArray:
+    """Relative error of an early cut: it grows with its cube and falls with the ratio squared."""
+    with np.errstate(divide="ignore"):
+        ratio = STIFF_RATIO / _softness(geometry, materials)
+    return np.asarray(load.early_cut * (cut / STIFF_CUT) ** 3 * ratio**2)
 
 
 def _gradings(
@@ -178,9 +210,12 @@ def _gradings(
     cuts = np.where(softness < SOFT_RATIO, np.maximum(decades, SMALLEST_CUT), usual.foot)
     cuts = np.minimum(cuts, usual.foot)
     touches = _touches_side(geometry)
-    stiff = replace(usual, foot=STIFF_CUT, corner=0.0 if touches.all() else usual.corner)
     may_coarsen = touches.any() & (usual.foot > FOLLOWED_CUT)
-    is_early = may_coarsen & (_early_cut(geometry, materials, load) <= CUT_SHARE * tolerance)
+    share = CUT_SHARE * tolerance
+    is_early = may_coarsen & (_early_cut(geometry, materials, load) <= share)
+    is_wide = (_early_cut(geometry, materials, load, WIDE_CUT)[is_early] <= share).all()
+    foot = WIDE_CUT if is_wide else STIFF_CUT
+    stiff = replace(usual, foot=foot, corner=0.0 if touches.all() else usual.corner)
     return [
         stiff if early else replace(usual, foot=cut)
         for early, cut in zip(is_early.tolist(), cuts.tolist(), strict=True)
@@ -194,7 +229,7 @@ def _unresolved_cusp(geometry: Geometry, materials: Materials) -> FloatArray:
     matter, up to about one hundredth; from there by about 0.15 of the stiffness a decade. An
     incompressible matrix is wedged in such a cusp: nothing is known of its error.
     """
-    excess = SMALLEST_CUT / (SOFT_CUT * _softness(geometry, materials))
+    excess = SMALLEST_CUT / (RESOLVED * _softness(geometry, materials))
     far = 0.01 + 0.15 * np.log10(np.maximum(excess, 300) / 300)
     error = np.where(excess > 1, np.where(excess < 300, 1e-7 * excess**2, far), 0.0)
     return np.where((excess > 1) & (materials.poisson_m > TIGHT), np.inf, error)

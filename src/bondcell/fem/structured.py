@@ -52,10 +52,10 @@ class Load:
     grading
         Mesh grading that the load needs.
     rate
-        How much closer to the limit two more orders come at least.
+        How much closer to the limit one more order comes usually at least.
     early_cut, usual_cut
         Relative errors of cutting the cusp early beside particles of ratio 100, and where
-        ``grading`` cuts it; see `reference`.
+        ``grading`` cuts it beside particles of the matrix's modulus; see `reference`.
     """
 
     whole: Supports
@@ -63,9 +63,9 @@ class Load:
     join: Callable[[list[FloatArray], float], FloatArray]
     index: int
     grading: Grading
-    rate: float = 20.0
+    rate: float = 4.0
     early_cut: float = 1e-7
-    usual_cut: float = 3e-8
+    usual_cut: float = 1.5e-7
 
 
 def _alone(responses: list[FloatArray], length: float) -> FloatArray:
@@ -87,19 +87,20 @@ def _beam(responses: list[FloatArray], length: float) -> FloatArray:
 _GRADED = Grading(corner=CORNER)
 LOADS = {
     ("normal", "roller"): Load(
-        NORMAL["roller"], (NORMAL["roller"],), _alone, 0, Grading(), 30.0, 2e-8, 1e-10
+        NORMAL["roller"], (NORMAL["roller"],), _alone, 0, Grading(), 4.0, 2e-8, 1.6e-8
     ),
-    ("normal", "clamped"): Load(NORMAL["clamped"], (NORMAL["clamped"],), _alone, 0, _GRADED),
+    ("normal", "clamped"): Load(
+        NORMAL["clamped"], (NORMAL["clamped"],), _alone, 0, _GRADED, usual_cut=8e-8
+    ),
     ("normal", "confined"): Load(
         NORMAL["confined"],
         (NORMAL["confined"],),
         _alone,
         0,
         Grading(foot=2e-6),
-        30.0,
         usual_cut=1e-8,
     ),
-    ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading(), 30.0, 2e-8, 1e-10),
+    ("torsion", None): Load(TORSION, (TORSION,), _alone, 0, Grading(), 10.0, 2e-8, 2e-8),
     ("shear", None): Load(BEAM, (SHEAR_HALF,), _alone, 0, _GRADED),
     ("bending", None): Load(BEAM, (SHEAR_HALF, BENDING_HALF), _beam, 1, _GRADED),
 }
@@ -157,6 +158,8 @@ class CellSolver:
         The mesh, if it is there already.
     projected
         Mixed form (default) or displacement form.
+    lag
+        How many orders the particles stay behind the matrix; see `particle_lag`.
     """
 
     def __init__(
@@ -167,13 +170,14 @@ class CellSolver:
         order: int,
         mesh: CellMesh | None = None,
         projected: bool = True,
+        lag: int = 0,
     ) -> None:
         self._load, self._half = load, half
         self._length = geometry.radius_i + geometry.radius_j + geometry.gap
         self._gap_ratio = geometry.gap / max(geometry.radius_i, geometry.radius_j)
         mesh = mesh or build_cell_mesh(geometry, load.grading, half)
         supports = load.halves if half else (load.whole,)
-        self._operators = [CellOperators(mesh, order, s, projected) for s in supports]
+        self._operators = [CellOperators(mesh, order, s, projected, lag) for s in supports]
 
     @cached_property
     def dof(self) -> int:
@@ -233,6 +237,7 @@ def solve_level(
     load: str = "normal",
     grading: Grading | None = None,
     projected: bool = True,
+    lag: int = 0,
 ) -> Level:
     """Solve one cell at one order and time the stages.
 
@@ -246,8 +251,9 @@ def solve_level(
         ``roller``, ``clamped`` or ``confined`` for the normal load.
     load
         ``normal``, ``shear``, ``torsion`` or ``bending``.
-    grading, projected
-        Mesh grading (the load's own by default) and form; see `Grading` and `element_matrices`.
+    grading, projected, lag
+        Mesh grading (the load's own by default), form, and how many orders the particles stay
+        behind; see `Grading`, `element_matrices` and `particle_lag`.
     """
     cell = cell.ravel()
     geometry, materials = geometry_of(cell), Materials.of(cell)
@@ -256,7 +262,7 @@ def solve_level(
     started = time.perf_counter()
     mesh = build_cell_mesh(geometry, grading or entry.grading, half)
     meshed = time.perf_counter()
-    solver = CellSolver(geometry, entry, half, order, mesh, projected)
+    solver = CellSolver(geometry, entry, half, order, mesh, projected, lag)
     assembled = time.perf_counter()
     stiffness = solver.stiffness(materials.constants(0))
     solved = time.perf_counter()

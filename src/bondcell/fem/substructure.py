@@ -77,10 +77,8 @@ class Substructure:
     ----------
     matrices
         Element matrices of this part.
-    inner, outer
-        Local unknowns inside an element and on its boundary.
     dofs
-        Global unknown of each ``outer`` local unknown, shape (elements, outer).
+        Global unknowns on the boundary of each element, shape (elements, outer).
     interface
         Global unknowns shared with other parts, in the order of the condensed matrix.
     held
@@ -92,8 +90,6 @@ class Substructure:
     """
 
     matrices: ElementMatrices
-    inner: NDArray[np.int64]
-    outer: NDArray[np.int64]
     dofs: NDArray[np.int64]
     interface: NDArray[np.int64]
     held: NDArray[np.bool_]
@@ -112,7 +108,7 @@ class Substructure:
         """Element matrices on (boundary unknowns, mean pressure), shape (elements, m, m)."""
         retained, link, gone = self._without_inner
         system = retained.copy()
-        means = np.arange(self.outer.size, retained.shape[1])
+        means = np.arange(self.dofs.shape[1], retained.shape[1])
         system[:, means, means] -= compliance
         others = np.arange(gone.shape[1])
         for block, coupling, own in zip(system, link, gone, strict=True):
@@ -131,7 +127,7 @@ class Substructure:
         pressures with themselves.
         """
         own = self.matrices
-        size, kept = self.outer.size, self._kept_pressures
+        size, kept = self.dofs.shape[1], self._kept_pressures
         link = np.concatenate((own.link, own.root_inner), axis=1)
         rest = np.empty((len(link), link.shape[1], link.shape[1]))
         for inner, coupling, left in zip(own.inner, link, rest, strict=True):
@@ -148,11 +144,12 @@ class Substructure:
         where = self._scatter
         kept, size, negative = where.kept, where.size, where.negative
         force: FloatArray = element @ where.moved
-        own = np.tensordot(where.moved, force, ((0, 1), (0, 1)))
+        motions = force.shape[2]
+        own = where.moved.reshape(-1, motions).T @ force.reshape(-1, motions)
         # Prescribed motions are columns after all unknowns, and so is what nobody reads.
         flat = np.bincount(where.entries, element.ravel(), minlength=(size + 1) ** 2)
         total = np.asarray(flat).reshape(size + 1, size + 1)
-        pull = np.zeros((size + 1, force.shape[2]))
+        pull = np.zeros((size + 1, motions))
         np.add.at(pull, where.numbers, force)
         stay, first, last = (
             slice(0, kept),
@@ -177,8 +174,9 @@ class Substructure:
         kept = self.interface.size + pressures
         position = np.full(self.held.size, -1)
         position[self.interface] = np.arange(self.interface.size)
-        mine = np.unique(self.dofs)
-        rest = mine[(position[mine] < 0) & ~self.held[mine]]
+        mine = np.zeros_like(self.held)
+        mine[self.dofs] = True
+        rest = np.flatnonzero(mine & (position < 0) & ~self.held)
         position[rest] = kept + np.arange(rest.size)
         size = kept + rest.size
         numbers = position[self.dofs]

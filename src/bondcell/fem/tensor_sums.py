@@ -56,8 +56,35 @@ def kinds_of(y_slopes: tuple[int, int]) -> list[tuple[int, int]]:
     return [(k, m) for k in range(3) for m in range(3) if (Y_SLOPE[k], Y_SLOPE[m]) == y_slopes]
 
 
-def sum_products(coefficients: FloatArray, order: int) -> FloatArray:
-    """Weighted sums of products of two shape functions.
+def component_pairs(components: int) -> list[tuple[int, int]]:
+    """Pairs of components whose sums differ: the others are transposed."""
+    return [(c, d) for c in range(components) for d in range(c, components)]
+
+
+@lru_cache(maxsize=64)
+def product_places(order: int, count: int, components: int) -> tuple[NDArray[np.int64], ...]:
+    """Where matrix entries are found among the `sum_products` of all `component_pairs`.
+
+    Of unknowns inside an element with each other, of unknowns on its boundary with those inside,
+    and of those on the boundary with each other; either kind is in the order (component, shape).
+    """
+    place = _pair_tables(order, count)[2]
+    edge = 4 * order
+    number = {pair: k for k, pair in enumerate(component_pairs(components))}
+    whole = np.empty((components, len(place), components, len(place)), dtype=np.int64)
+    for c in range(components):
+        for d in range(components):
+            own = place if c <= d else place.T
+            whole[c, :, d] = own + number[min(c, d), max(c, d)] * place.size
+    inside, boundary = slice(edge, None), slice(0, edge)
+    return tuple(
+        whole[:, rows, :, columns].reshape(components * whole[0, rows].shape[0], -1)
+        for rows, columns in ((inside, inside), (boundary, inside), (boundary, boundary))
+    )
+
+
+def sum_products(coefficients: FloatArray, order: int, out: FloatArray) -> None:
+    """Weighted sums of products of two shape functions, in the order of `product_places`.
 
     Parameters
     ----------
@@ -65,20 +92,16 @@ def sum_products(coefficients: FloatArray, order: int) -> FloatArray:
         Of each pair of kinds at the points, shape (3, 3, batch, q, q).
     order
         Polynomial order.
-
-    Returns
-    -------
-    numpy.ndarray
-        Shape (batch, shapes, shapes).
+    out
+        Receives the sums, shape (batch, shapes, shapes).
     """
     batch, count = coefficients.shape[2:4]
-    along_x, along_y, place = _pair_tables(order, count)
+    along_x, along_y, _ = _pair_tables(order, count)
     half = []
     for pair, table in zip(_Y_PAIRS, along_x, strict=True):
         collected = np.stack([coefficients[k, m] for k, m in kinds_of(pair)], axis=1)
         half.append(table @ collected.reshape(batch, -1, count))
-    both = np.concatenate(half, axis=2).reshape(-1, along_y.shape[0]) @ along_y
-    return both.reshape(batch, -1).take(place, axis=1, mode="clip")
+    np.matmul(np.concatenate(half, axis=2), along_y, out=out)
 
 
 def pressure_line(order: int, at: FloatArray) -> FloatArray:
