@@ -25,6 +25,22 @@ include: "workflow/rules/report.smk"
 include: "workflow/rules/surrogate.smk"
 
 
+# Seconds of work each: a cluster's queue is not for them.
+localrules:
+    all,
+    accuracy,
+    accuracy_over_time,
+    atlas_tables,
+    bond_series,
+    convergence_table,
+    figures,
+    relaxation_stability,
+    report,
+    specimen_field_vtk,
+    specimen_vtk,
+    stability,
+
+
 rule all:
     default_target: True
     input:

@@ -38,12 +38,14 @@ convergence:
   repeats: 1
 """
 
-# Every process that ends well leaves the names of its modules behind.
+# Every process that ends well leaves the names of its modules behind, a job's under its scene.
 SITECUSTOMIZE = """\
 import atexit, json, os, sys
 def leave():
     name = os.path.basename(sys.argv[0] if sys.argv else "")
-    path = os.path.join(os.environ["MODULES_FOLDER"], f"{name}.{os.getpid()}.json")
+    job = getattr(sys.modules["__main__"], "snakemake", None)
+    scene = getattr(getattr(job, "wildcards", None), "scene", "")
+    path = os.path.join(os.environ["MODULES_FOLDER"], f"{name}.{scene}.{os.getpid()}.json")
     with open(path, "w") as file:
         json.dump(sorted(sys.modules), file)
 if "MODULES_FOLDER" in os.environ:
@@ -103,9 +105,17 @@ class Workspace:
         """Script -> modules that its processes of the last run had loaded."""
         loaded: dict[str, set[str]] = {}
         for file in self.modules_folder.iterdir():
-            is_script = file.name.startswith("tmp")  # tmp<something>.<script>.py.<process>.json
+            is_script = file.name.startswith("tmp")  # tmp<something>.<script>.py.<scene>.<...>
             script = file.name.split(".")[1] if is_script else "snakemake"
             loaded.setdefault(script, set()).update(json.loads(file.read_text()))
+        return loaded
+
+    def modules_of_scenes(self) -> dict[tuple[str, str], set[str]]:
+        """(scene, script) -> modules that the jobs of the last run had loaded."""
+        loaded: dict[tuple[str, str], set[str]] = {}
+        for file in self.modules_folder.glob("tmp*"):  # tmp<something>.<script>.py.<scene>.<...>
+            _, script, _, scene, *_ = file.name.split(".")
+            loaded.setdefault((scene, script), set()).update(json.loads(file.read_text()))
         return loaded
 
     def scripts(self) -> list[Path]:

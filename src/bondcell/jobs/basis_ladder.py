@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from statistics import median
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +19,7 @@ from bondcell.fem.reduced_basis import Points, ReducedBasis
 from bondcell.fem.structured import OFFSET, Load, find_load, geometry_of
 from bondcell.fem.supports import Supports
 from bondcell.fem.threads import one_thread
+from bondcell.timing import Timing, timed
 
 MATERIALS, SAMPLE = 400, 40
 """Materials that the basis serves, and how many of them are also solved without it."""
@@ -49,12 +49,15 @@ class BasisRung:
     bound, error
         Largest relative bound over all random materials, and largest true error (against the
         solution without the basis) over the sample of them.
+    timing
+        What one point among many takes.
     """
 
     size: int
     level: Level
     bound: float
     error: float
+    timing: Timing
 
 
 @one_thread()
@@ -90,19 +93,17 @@ def climb_basis(cell: Cell, order: int, bc: str, load: str, repeats: int) -> Ite
         if basis.size == last:
             continue
         last = basis.size
-        times = []
-        for _ in range(repeats):
-            started = time.perf_counter()
-            response, bound = basis.respond(study.points)
-            times.append((time.perf_counter() - started) / MATERIALS)
+        (response, bound), timing = timed(partial(basis.respond, study.points), repeats)
+        timing = timing.per(MATERIALS)
         own, doubt = (values[:, study.index] for values in (study.diagonal(response), bound))
         stiffness = study.scale * own
         largest = float((doubt / np.abs(own)).max())
         yield BasisRung(
             size=basis.size,
-            level=Level(float(stiffness[0]), basis.size, study.elements, 0.0, 0.0, median(times)),
+            level=Level(float(stiffness[0]), basis.size, study.elements, 0.0, 0.0, timing.seconds),
             bound=largest,
             error=float(np.abs(stiffness[:SAMPLE] / exact - 1).max()),
+            timing=timing,
         )
         if largest <= TOLERANCES[-1]:
             break  # more vectors would only show round-off

@@ -34,6 +34,7 @@ from bondcell.results.convergence import (
 )
 from bondcell.scenes.names import covering
 from bondcell.status import Status, cf_flag_attributes
+from bondcell.timing import ATTRIBUTES, Timing, timed
 
 if TYPE_CHECKING:
     from bondcell.scenes.blocks import Convergence
@@ -44,7 +45,7 @@ GRADED_ORDER = 4
 
 _OF_BASIS = ("bound", "sample_error")
 
-_TIMES = {"seconds_spread": "spread", "seconds_cpu": "cpu"}
+_OF_TIMING = ("seconds_spread", "seconds_cpu")
 
 MODEL_POINTS = (100, 10_000)
 """Fewest and most points on which an analytic model is timed: cells of slightly different gaps."""
@@ -56,6 +57,7 @@ Progress = Callable[[int, int], None]
 
 
 _FAILED = Level(np.nan, 0, 0, np.nan, np.nan, np.nan)
+_UNTIMED = Timing(np.nan, np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,7 @@ class _Rung:
     level: Level
     bound: float = np.nan
     sample_error: float = np.nan
-    spread: float = np.nan
-    cpu: float = np.nan
+    timing: Timing = _UNTIMED
 
 
 def run_convergence(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
@@ -162,7 +163,7 @@ def _grow(name: str, case: ConvergenceCase, order: int, repeats: int) -> list[_R
     except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError) as error:
         warnings.warn(f"case {name}, reduced basis of order {order}: {error}", stacklevel=2)
         return [_Rung(0, _failure(error), _FAILED)]
-    return [_Rung(r.size, Status.ok, r.level, r.bound, r.error) for r in rungs]
+    return [_Rung(r.size, Status.ok, r.level, r.bound, r.error, r.timing) for r in rungs]
 
 
 def _climb(
@@ -187,15 +188,14 @@ def _climb(
 
 
 def _measured(value: float, level: Callable[[], Level], repeats: int) -> _Rung:
-    """Median of the repeats with the distance of the slowest from the quickest, and CPU time."""
+    """Median of the repeats by stage, with their timing as a whole."""
     runs, cpu = [], []
     for _ in range(repeats):
         started = time.process_time()
         runs.append(level())
         cpu.append(time.process_time() - started)
-    wall = [run.seconds for run in runs]
-    spread = max(wall) - min(wall)
-    return _Rung(value, Status.ok, _median(runs), spread=spread, cpu=median(cpu))
+    timing = Timing.of([run.seconds for run in runs], cpu)
+    return _Rung(value, Status.ok, _median(runs), timing=timing)
 
 
 def _failure(error: Exception) -> Status:
@@ -223,7 +223,16 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
     methods = list(ladders)
     levels = max((len(rungs) for rungs in ladders.values()), default=0)
     shape = (len(methods), levels)
-    names = ("refinement", "stiffness", "error", "order", *STAGES, "seconds", *_OF_BASIS, *_TIMES)
+    names = (
+        "refinement",
+        "stiffness",
+        "error",
+        "order",
+        *STAGES,
+        "seconds",
+        *_OF_BASIS,
+        *_OF_TIMING,
+    )
     real = {name: np.full(shape, np.nan) for name in names}
     count = {name: np.zeros(shape, dtype=np.int64) for name in ("dof", "elements")}
     status = np.full(shape, Status.not_computed, dtype=np.int8)
@@ -235,8 +244,8 @@ def _ladder_dataset(ladders: Mapping[str, Sequence[_Rung]], reference: float) ->
         }
         for name in ("refinement", *_OF_BASIS):
             values[name] = np.array([getattr(rung, name) for rung in rungs])
-        for name, own in _TIMES.items():
-            values[name] = np.array([getattr(rung, own) for rung in rungs])
+        for name in _OF_TIMING:
+            values[name] = np.array([getattr(rung.timing, name) for rung in rungs])
         values["error"] = relative_error(values["stiffness"], reference)
         values["order"] = observed_order(values["error"], _work(method, values))
         status[here] = [rung.status for rung in rungs]
@@ -269,7 +278,7 @@ def _model_dataset(
     fewest, most = MODEL_POINTS
     spread = inputs.pop("gap") * (1 + 1e-3 * np.linspace(0, 1, most))
     cells = xr.Dataset(inputs).assign(gap=("point", spread))
-    stiffness, seconds = np.full(len(models), np.nan), np.full(len(models), np.nan)
+    stiffness, timings = np.full(len(models), np.nan), [_UNTIMED] * len(models)
     status = np.full(len(models), Status.not_computed, dtype=np.int8)
     for row, model in enumerate(models):
         if model not in able:
@@ -278,14 +287,13 @@ def _model_dataset(
         stiffness[row], status[row] = first["stiffness"], first["status"]
         count = int(np.clip(MODEL_SECONDS / float(first["seconds"]), fewest, most))
         points = cells.isel(point=slice(count))
-        times = [evaluate(points, model, load)["seconds"].values[0] for _ in range(repeats)]
-        seconds[row] = median(times)
+        _, timing = timed(partial(evaluate, points, model, load), repeats)
+        timings[row] = timing.per(count)
     values = {
         "model_stiffness": stiffness,
         "model_error": np.abs(stiffness / reference - 1),
-        "model_seconds": seconds,
         "model_status": status,
-    }
+    } | {f"model_{name}": [getattr(timing, name) for timing in timings] for name in ATTRIBUTES}
     return xr.Dataset(
         {name: (MODEL, data, _MODEL_ATTRIBUTES[name]) for name, data in values.items()},
         {MODEL: (MODEL, list(models), {"long_name": "analytic model"})},
@@ -328,8 +336,8 @@ _LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
     "seconds_assembly": _time("wall time of assembly, median of repeats"),
     "seconds_solve": _time("wall time of the solution, median of repeats"),
     "seconds": _time("wall time of all stages"),
-    "seconds_spread": _time("wall time of the slowest repeat less that of the quickest"),
-    "seconds_cpu": _time("processor time of all stages, median of repeats"),
+    "seconds_spread": ATTRIBUTES["seconds_spread"],
+    "seconds_cpu": ATTRIBUTES["seconds_cpu"],
     "dof": _number("degrees of freedom"),
     "elements": _number("elements of the mesh"),
     "status": cf_flag_attributes(),
@@ -340,6 +348,8 @@ _LADDER_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
 _MODEL_ATTRIBUTES: Mapping[str, Mapping[str, Any]] = {
     "model_stiffness": _stiffness("stiffness by an analytic model"),
     "model_error": _number("error of an analytic model relative to the finest structured level"),
-    "model_seconds": _time("wall time per point among many, median of repeats"),
+    "model_seconds": _time("wall time per point among many, median of the runs"),
+    "model_seconds_spread": _time("time per point of the slowest run less that of the quickest"),
+    "model_seconds_cpu": _time("processor time per point among many, median of the runs"),
     "model_status": cf_flag_attributes(),
 }

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import time as clock
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from statistics import median
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -24,6 +22,7 @@ from bondcell.outputs import STIFFNESS_UNITS, TIME
 from bondcell.prony.conventions import Relaxing
 from bondcell.results.names import reference_variants
 from bondcell.status import Status, cf_flag_attributes
+from bondcell.timing import ATTRIBUTES, timed
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene
@@ -39,9 +38,6 @@ TRUTH = 1e-8
 
 FIRST_STEP = 0.1
 """Where graded steps begin, over the shortest relaxation time."""
-
-QUICK = 0.8
-"""A first run shorter than this is not counted [s]."""
 
 Progress = Callable[[int, int], None]
 
@@ -80,8 +76,8 @@ def run_methods(scene: Scene, progress: Progress | None = None) -> xr.Dataset:
         On ``(case, method, level)``: ``refinement`` (tolerance, steps a decade, nodes of the
         contour), ``error`` (largest relative one over the times, against the exact series of a
         discretisation of tolerance `TRUTH`), ``seconds`` (set-up included, median of repeats),
-        ``dof``, ``status``, and ``curve`` on ``(..., compared_time)``. On ``case``: ``load``,
-        ``bc``, ``unit``, ``reference_error``.
+        ``seconds_spread``, ``seconds_cpu``, ``dof``, ``status``, and ``curve`` on
+        ``(..., compared_time)``. On ``case``: ``load``, ``bc``, ``unit``, ``reference_error``.
     """
     block = scene.prony
     assert block is not None
@@ -154,7 +150,7 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
     curve = truth.series.relaxation(problem.times)
     levels = max(sum(run.method == method for run in runs) for method in METHODS)
     shape = (len(METHODS), levels)
-    real = {name: np.full(shape, np.nan) for name in ("refinement", "error", "seconds")}
+    real = {name: np.full(shape, np.nan) for name in ("refinement", "error", *ATTRIBUTES)}
     whole = {"dof": np.zeros(shape, dtype=np.int64)}
     status = np.full(shape, Status.not_computed, dtype=np.int8)
     curves = np.full((*shape, problem.times.size), np.nan)
@@ -164,14 +160,16 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
         place[run.method] += 1
         real["refinement"][at] = run.refinement
         try:
-            values, dof, seconds = _timed(run, repeats)
+            (values, dof), timing = timed(run.values, repeats)
         except (BondcellError, ArithmeticError, np.linalg.LinAlgError, RuntimeError):
             status[at] = Status.solver_failed
             continue
         good = np.isfinite(values).all()
         status[at] = Status.ok if good else Status.solver_failed
         real["error"][at] = np.abs(values / curve - 1).max()
-        real["seconds"][at], whole["dof"][at], curves[at] = seconds, dof, values
+        whole["dof"][at], curves[at] = dof, values
+        for name in ATTRIBUTES:
+            real[name][at] = getattr(timing, name)
     dims = ("method", "level")
     variables: dict[str, Any] = {
         name: (dims, values, _ATTRIBUTES[name]) for name, values in (real | whole).items()
@@ -203,23 +201,10 @@ def _case(problem: _Problem, runs: list[_Run], repeats: int) -> xr.Dataset:
     return xr.Dataset(variables, coords)
 
 
-def _timed(run: _Run, repeats: int) -> tuple[FloatArray, int, float]:
-    """Values, unknowns and median time; of a quick method the first run only warms caches."""
-    started = clock.perf_counter()
-    values, dof = run.values()
-    first = clock.perf_counter() - started
-    seconds = [first] if first > QUICK else []
-    while len(seconds) < repeats:
-        started = clock.perf_counter()
-        values, dof = run.values()
-        seconds.append(clock.perf_counter() - started)
-    return values, dof, median(seconds)
-
-
 _ATTRIBUTES = {
     "refinement": {"units": "1", "long_name": "tolerance, steps a decade, or nodes"},
     "error": {"units": "1", "long_name": "largest relative error over the times"},
-    "seconds": {"units": "s", "long_name": "wall time, set-up included, median of repeats"},
+    **ATTRIBUTES,
     "dof": {"units": "1", "long_name": "degrees of freedom"},
     "reference_error": {"units": "1", "long_name": "error estimate of what is compared with"},
 }

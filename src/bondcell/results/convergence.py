@@ -16,6 +16,7 @@ import xarray as xr
 
 from bondcell.cell import FloatArray
 from bondcell.status import Status
+from bondcell.timing import ATTRIBUTES
 
 STRUCTURED, GRADED, TRIANGLES = "structured", "structured_h", "triangles"
 """The discretisations: the p-ladder, the h-ladder of the same elements, that of the triangles."""
@@ -49,7 +50,7 @@ COLUMNS = (
     "error",
     "order",
     *STAGES,
-    "seconds",
+    *ATTRIBUTES,
     "status",
     "bound",
     "sample_error",
@@ -130,8 +131,9 @@ def convergence_table(study: xr.Dataset) -> pd.DataFrame:
         The `COLUMNS`. ``refinement`` is the polynomial order of ``structured``, the ratio of
         neighbouring elements of ``structured_h``, the element size of ``triangles``, the number of
         vectors of ``reduced_basis``; ``error`` is relative to the finest structured level, which
-        has none itself; ``order`` as in `observed_order`; times [s] are medians of repeats, those
-        of a reduced basis and of an analytic model per point. An analytic model has neither level
+        has none itself; ``order`` as in `observed_order`; times [s] are medians of repeats (but
+        ``seconds_spread``, from the quickest to the slowest), those of a reduced basis and of an
+        analytic model per point. An analytic model has neither level
         nor unknowns. ``bound`` and ``sample_error`` of a reduced basis are its largest bound over
         random materials and its largest true error over a sample of them.
     """
@@ -165,7 +167,7 @@ def _model_rows(of_case: xr.Dataset) -> list[dict[str, Any]]:
         at = of_case.sel({MODEL: model})
         if at["model_status"] == Status.not_computed:
             continue
-        row = {name: at[f"model_{name}"].item() for name in ("error", "seconds", "status")}
+        row = {name: at[f"model_{name}"].item() for name in ("error", *ATTRIBUTES, "status")}
         row |= _stiffness(at, "model_")
         rows.append(row | {"method": str(model)} | _status(row["status"]))
     return rows

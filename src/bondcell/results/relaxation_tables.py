@@ -12,6 +12,7 @@ import xarray as xr
 from bondcell.results.convergence import COLUMNS
 from bondcell.results.view import REFERENCE, analytic_names
 from bondcell.status import Status
+from bondcell.timing import ATTRIBUTES
 
 AT = ("convention", "series")
 """Dimensions of every table besides the swept axes."""
@@ -223,7 +224,7 @@ def methods_table(methods: xr.Dataset) -> pd.DataFrame:
                 at = ladder.sel(level=level)
                 if at["status"] == Status.not_computed:
                     continue
-                values = {n: at[n].item() for n in ("refinement", "error", "seconds", "dof")}
+                values = {n: at[n].item() for n in ("refinement", "error", *ATTRIBUTES, "dof")}
                 status = Status(int(at["status"])).name
                 rows.append(
                     head | values | {"method": str(method), "level": int(level), "status": status}

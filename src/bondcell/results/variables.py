@@ -180,6 +180,8 @@ _LADDER = """
     model_rotational_stiffness | case analytic_model | N m rad-1 | the same, torsion and bending
     model_error | case analytic_model | 1 | relative to the finest structured level
     model_seconds | case analytic_model | s | wall time per point among many, median of repeats
+    model_seconds_spread | case analytic_model | s | slowest repeat less the quickest, per point
+    model_seconds_cpu | case analytic_model | s | processor time per point, median of repeats
     model_status | case analytic_model |  | outcome, a flag
     reference_error | case         | 1 | relative difference of the two finest levels
     load       | case              |   | load of the case
@@ -195,6 +197,8 @@ _METHODS_IN_TIME = """
     refinement | case method level | 1 | tolerance, steps a decade, or nodes
     error      | case method level | 1 | largest relative error over the times
     seconds    | case method level | s | wall time, set-up included, median of repeats
+    seconds_spread | case method level | s | slowest repeat less the quickest
+    seconds_cpu | case method level | s | processor time, median of repeats
     dof        | case method level | 1 | degrees of freedom
     status     | case method level |   | outcome, a flag
     curve      | case method level compared_time | by load | stiffness after a step
