@@ -18,6 +18,9 @@ from bondcell.sealed_files import seal
 CONVENTIONS = "CF-1.11"
 READABLE = "a complete netCDF-4 file"
 
+LARGEST_CHUNK = 1 << 17
+"""Values that are compressed and read together at most: a megabyte."""
+
 
 def write_dataset(
     dataset: xr.Dataset,
@@ -172,7 +175,24 @@ def _encoding(dataset: xr.Dataset, name: str) -> dict[str, Any]:
         encoding["dtype"] = "int32"
     if variable.ndim:
         encoding |= {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
+    if variable.size > LARGEST_CHUNK:
+        encoding["chunksizes"] = chunk_shape(variable.shape)
     return encoding
+
+
+def chunk_shape(shape: tuple[int, ...]) -> tuple[int, ...]:
+    """Shape of the blocks of a large array: some models at some points can be read alone.
+
+    Examples
+    --------
+    >>> chunk_shape((4, 1_000_000)), chunk_shape((4, 300, 1000))
+    ((1, 131072), (1, 131, 1000))
+    """
+    left, chunks = LARGEST_CHUNK, []
+    for size in reversed(shape):
+        chunks.append(max(1, min(size, left)))
+        left //= chunks[-1]
+    return tuple(reversed(chunks))
 
 
 def _fits(values: np.ndarray) -> bool:

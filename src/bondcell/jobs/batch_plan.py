@@ -43,7 +43,7 @@ SECONDS_PER_GEOMETRY = 0.5
 SECONDS_PER_STATE = 0.015
 """Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
 
-LARGEST_REFERENCE_BATCH = 20_000
+LARGEST_REFERENCE_BATCH = 50_000
 """Points of one geometry that are kept together: bounds the memory of its job."""
 
 SECONDS_PER_RELAXING_MODEL = 0.02
