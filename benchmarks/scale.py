@@ -95,7 +95,7 @@ def measure(points: int) -> dict[str, float]:
         prepare(folder, points)
         snakemake = ("-m", "snakemake", "--cores", "2", *WANTED)
         plan = run(folder, *snakemake, "--dry-run")
-        (jobs,) = re.findall(r"^total +(\d+)$", plan.output, re.MULTILINE)
+        jobs = re.findall(r"^total +(\d+)$", plan.output, re.MULTILINE)[0]
         whole = run(folder, *snakemake)
         again = run(folder, *snakemake, "--dry-run")
         assert "Nothing to be done" in again.output, again.output

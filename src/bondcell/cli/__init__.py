@@ -80,6 +80,7 @@ def parser() -> argparse.ArgumentParser:
     from bondcell.cli import (
         advise,
         compare,
+        merging,
         model_list,
         report_page,
         show,
@@ -96,7 +97,7 @@ def parser() -> argparse.ArgumentParser:
     )
     words.add_argument("--version", action=_Version, help="print the version and leave")
     commands = words.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for command in (stiffness, advise, validation, show, compare, report_page, model_list):
+    for command in (stiffness, advise, validation, show, compare, merging, report_page, model_list):
         command.add_to(commands)
     return words
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -16,7 +17,8 @@ from bondcell.jobs.batch_files import read_batch, read_point_batch
 from bondcell.jobs.cell_points import cell_at
 from bondcell.jobs.collect_relaxation import collect_relaxation
 from bondcell.jobs.merge import Canvas
-from bondcell.jobs.rows import REFERENCE, Row, analytic_rows
+from bondcell.jobs.point_hash import SCHEME
+from bondcell.jobs.rows import REFERENCE, Row, analytic_rows, wanted_rows
 from bondcell.outputs import DETAILS
 from bondcell.results.finite_axes import with_finite_axes
 from bondcell.results.names import models_with, reference_variants, result_names
@@ -72,7 +74,9 @@ def collect(
         canvas.add(compute_analytic(quick))
     attributes |= machines(origins)
     result = _with_models(canvas.dataset(), result_names(scene))
-    result = result.assign_attrs(attributes, load=load)
+    rows = [row.as_list() for row in wanted_rows(scene) if row.load == load]
+    identity = {"hash_scheme": SCHEME, "rows": json.dumps(rows)}
+    result = result.assign_attrs(attributes, load=load, **identity)
     if relaxation:
         result = result.merge(collect_relaxation(scene, study, relaxation, load))
     return with_finite_axes(result)
