@@ -9,9 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from bondcell.cell import UNITS
+from bondcell.cell import UNITS, Cell
 from bondcell.errors import InputError, Violation
-from bondcell.inputs import cell_from_study
 from bondcell.jobs.point_hash import SCHEME, HashIndex, point_hashes
 from bondcell.results.finite_axes import PREFIX, with_finite_axes
 from bondcell.results.view import SAMPLE, parameters
@@ -107,7 +106,7 @@ def _new_points(first: Loads, second: Loads) -> np.ndarray[Any, Any]:
         Values of a point of both differ.
     """
     loads = [next(iter(found.values())) for found in (first, second)]
-    hashes = [point_hashes(cell_from_study(_inputs(study))[0]) for study in loads]
+    hashes = [point_hashes(Cell(**{name: _flat(s, name) for name in UNITS})) for s in loads]
     at = HashIndex(hashes[0]).find(hashes[1])
     both = at >= 0
     violations = []
@@ -198,11 +197,6 @@ def _renumbered(parts: list[xr.Dataset]) -> xr.Dataset:
             whole[name] = ((), values[0], whole[name].attrs)
     number = {"units": "1", "long_name": "number of the sample"}
     return whole.assign_coords({SAMPLE: (SAMPLE, np.arange(whole.sizes[SAMPLE]), number)})
-
-
-def _inputs(study: xr.Dataset) -> xr.Dataset:
-    keep = [name for name in study.variables if name in UNITS or name in study.sizes]
-    return study[keep].drop_vars("model", errors="ignore")
 
 
 def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
