@@ -89,7 +89,7 @@ def test_jobs_grow_with_the_work_and_never_one_a_point():
     assert len(analytic_parts(np.arange(1_000_000), 1)) == 2
     assert len(analytic_parts(np.arange(1_000_000), 9)) == 5
     assert len(cuts(200, 100)) == 10
-    assert len(cuts(2, 50_000)) == 6
+    assert len(cuts(2, 120_000)) == 6
     assert len(cuts(100_000, 1)) == 100
     assert JOB_SECONDS >= 30
 
