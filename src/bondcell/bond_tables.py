@@ -137,7 +137,10 @@ def write_bond_table(series: xr.Dataset, path: str | Path) -> Path:
     return Path(path)
 
 
-def _check(series: xr.Dataset) -> None:
+def _check(series: object) -> None:
+    if not isinstance(series, xr.Dataset):
+        allowed = "what bondcell.relaxation_series gives"
+        raise InputError([Violation("series", type(series).__name__, allowed)])
     missing = [
         Violation(name, None, "a variable of what bondcell.relaxation_series gives")
         for name in SERIES

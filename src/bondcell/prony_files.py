@@ -52,7 +52,10 @@ def read_prony(path: str | Path, **options: Any) -> Prony:
     >>> read_prony(path)
     Prony(2 terms, g_inf=0.5, relative to instantaneous)
     """
-    source = Path(path)
+    try:
+        source = Path(path)
+    except TypeError:
+        raise PronyError([Violation("file", path, "a path")]) from None
     if source.suffix.lower() == ".csv":
         shear, bulk = _from_csv(source)
         settings: dict[str, Any] = {}
@@ -102,6 +105,8 @@ def _from_csv(source: Path) -> tuple[Rows, Rows]:
         (bulk if table == "bulk" else shear).append((first, values["tau"]))
         if "k" in values:
             bulk.append((values["k"], values["tau"]))
+    if not lines[1:]:
+        bad.append(Violation("rows", "none", "at least one below the header"))
     if bad:
         raise PronyError(bad, str(source))
     return shear, bulk

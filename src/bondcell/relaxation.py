@@ -8,15 +8,18 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
-from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.evaluate import checked_model
 from bondcell.inputs import cell_from_study
 from bondcell.outputs import FREQUENCY, STIFFNESS_UNITS, TIME
+from bondcell.prony.axis import checked_axis
 from bondcell.prony.conventions import Relaxing, absolute_moduli
 from bondcell.prony.prony import Prony
 from bondcell.relaxation_points import Answer, Question, flags, flags_for_all_times, solve, states
 from bondcell.status import cf_flag_attributes
+
+OWN_DIMS = ("time", "frequency", "term")
+"""Dimensions that results add to those of the study."""
 
 
 def relaxation(
@@ -71,7 +74,7 @@ def relaxation(
     array([84060., 52570.,  8610.])
     """
     question = _ask(study, prony, model, convention, load, options)
-    points = _checked_axis("time", time, allow_end=True)
+    points = checked_axis("time", time)
     answer = solve(question)
     shape = (points.size, *question.shape)
     stiffness = answer.series.relaxation(points).reshape(shape)
@@ -176,7 +179,7 @@ def dynamic_stiffness(
         ``loss_factor``, and ``error_estimate``, ``status``, ``dof``, ``seconds`` on (...).
     """
     question = _ask(study, prony, model, convention, load, options)
-    points = _checked_axis("frequency", frequency, allow_end=False)
+    points = checked_axis("frequency", frequency, allow_end=False)
     answer = solve(question)
     value = answer.series.dynamic(points).reshape(points.size, *question.shape)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -204,6 +207,10 @@ def _ask(
     options: dict[str, Any],
 ) -> Question:
     chosen = checked_model(model, load, options)
+    taken = [dim for dim in OWN_DIMS if isinstance(study, xr.Dataset) and dim in study.dims]
+    if taken:
+        allowed = f"dimensions of other names: {', '.join(OWN_DIMS)} are the results' own"
+        raise InputError([Violation("study", dim, allowed) for dim in taken])
     if not isinstance(prony, Prony):
         raise InputError([Violation("prony", type(prony).__name__, "a bondcell.Prony")])
     if isinstance(study, xr.Dataset) and prony.instantaneous_modulus is not None:
@@ -216,19 +223,6 @@ def _ask(
     cell, dims = cell_from_study(study)
     matrix = Relaxing.of(cell.ravel(), prony, convention)
     return Question(study, chosen, load, dict(options), matrix, cell.shape, dims)
-
-
-def _checked_axis(name: str, given: ArrayLike, allow_end: bool) -> FloatArray:
-    try:
-        values = np.atleast_1d(np.asarray(given, dtype=float))
-    except (TypeError, ValueError):
-        values = np.array([np.nan])
-    good = (values >= 0) & (np.isfinite(values) | allow_end)
-    if values.ndim != 1 or not values.size or not good.all():
-        wrong = float(values[~good].ravel()[0]) if (~good).any() else given
-        allowed = f"a list of numbers in [0, {'inf]' if allow_end else 'inf)'}"
-        raise InputError([Violation(name, wrong, allowed)])
-    return values
 
 
 def _stiffness_attributes(load: str, name: str) -> dict[str, str]:

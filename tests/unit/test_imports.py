@@ -23,7 +23,17 @@ HEAVY = {
     "xarray",
 }
 
-GROUND = {"cell", "errors", "status", "models", "fem", "lattice", "prony", "solid"}
+GROUND = {
+    "cell",
+    "errors",
+    "status",
+    "models",
+    "fem",
+    "lattice",
+    "prony",
+    "relaxing_ranges",
+    "solid",
+}
 TOP = {"__main__", "cli", "figures", "report"}
 
 

@@ -149,3 +149,20 @@ def test_springs_in_series_are_completely_monotone(pairs, log_compliance, end):
 def test_a_chain_in_the_laplace_variable():
     chain = Chain(np.array(1.0), np.array([2.0]), np.array([4.0]))
     np.testing.assert_allclose(chain.transform([0.0, 0.25, np.inf]), [1.0, 2.0, 3.0])
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda p: p.relaxation_modulus([-1.0]), r"time = -1\.0: .*\[0, inf\]"),
+        (lambda p: p.relaxation_modulus("now"), "time = 'now'"),
+        (lambda p: p.storage_modulus([np.nan]), "frequency = nan"),
+        (lambda p: p.loss_modulus([[1.0]]), r"frequency = \[\[1\.0\]\]"),
+        (lambda p: p.loss_factor([]), r"frequency = \[\]"),
+        (lambda p: p.shifted("warm"), "factor = 'warm'"),
+        (lambda p: p.shifted(1e300), r"times\[0\] = 1\.0: .*after the shift"),
+    ],
+)
+def test_wrong_times_and_frequencies(call, message):
+    with pytest.raises(bondcell.InputError, match=message):
+        call(Prony([0.5], [1.0]))

@@ -165,6 +165,16 @@ def test_wrong_reductions_are_refused(arguments, message):
         bondcell.reduce_series(series(), **arguments)
 
 
+def test_what_is_no_file_or_no_series_is_refused(tmp_path):
+    with pytest.raises(bondcell.InputError, match="file = None"):
+        bondcell.read_prony(None)
+    (tmp_path / "bare.csv").write_text("g,k,tau\n")
+    with pytest.raises(bondcell.InputError, match="rows = 'none'"):
+        bondcell.read_prony(tmp_path / "bare.csv")
+    with pytest.raises(bondcell.InputError, match="series = 'NoneType'"):
+        bondcell.reduce_series(None, 2, (1.0, 2.0))
+
+
 def test_table_of_one_bond(tmp_path):
     one = bondcell.reduce_series(series(), 3, (1e-4, 1e4)).isel(gap=0)
     path = bondcell.write_bond_table(one, tmp_path / "bond.csv")

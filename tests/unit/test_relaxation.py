@@ -131,6 +131,12 @@ def test_errors_name_field_and_value():
         bondcell.relaxation(study(), PRONY, [0.0, -1.0])
     with pytest.raises(bondcell.InputError, match="frequency = inf"):
         bondcell.dynamic_stiffness(study(), PRONY, [np.inf])
+    with pytest.raises(bondcell.InputError, match="time = 'now'"):
+        bondcell.relaxation(study(), PRONY, "now")
+    with pytest.raises(bondcell.InputError, match=r"convention = \['constant_bulk'\]"):
+        bondcell.relaxation(study(), PRONY, [0.0], convention=["constant_bulk"])
+    with pytest.raises(bondcell.InputError, match=r"study = 'time'.*\n.*study = 'term'"):
+        bondcell.relaxation_series(study().expand_dims(time=[1], term=[2]), PRONY)
     with pytest.raises(bondcell.InputError, match="convention = 'plastic'"):
         bondcell.relaxation(study(), PRONY, [0.0], convention="plastic")
     bulk = Prony([0.5], [1.0], bulk_weights=[0.1], bulk_times=[1.0])

@@ -15,7 +15,7 @@ from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.batch_plan import plan
 from bondcell.jobs.cell_points import cell_at
 from bondcell.jobs.collect_relaxation import collect_relaxation
-from bondcell.jobs.relaxation_batch import compute_relaxation, shift_factor
+from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.jobs.rows import relaxation_rows, wanted_rows
 from bondcell.results.relaxation_bonds import bond_series, bond_table
 from bondcell.results.relaxation_tables import (
@@ -204,7 +204,9 @@ def test_bad_materials(tmp_path):
         parse_material(good | {"times": ["1 mm"], "kind": "jelly", "wlf": {"c_3": 1}})
     fields = {violation.field for violation in caught.value.violations}
     assert fields == {"times.0", "kind", "wlf.c_3", "wlf.c_1", "wlf.c_2"}
-    with pytest.raises(MaterialError, match="either weights and young, or moduli"):
+    with pytest.raises(MaterialError, match=r"young = -1: .* above 0 Pa"):
+        parse_material(good | {"young": -1})
+    with pytest.raises(MaterialError, match=r"material = .*either weights and young, or moduli"):
         parse_material(good | {"times": [1], "moduli": ["1 MPa"]})
 
 
@@ -215,7 +217,7 @@ def test_temperature_shifts_the_times(tmp_path):
     scene = parse_scene(data, materials=tmp_path)
     cold, warm = scene.prony.cases()
     assert (cold.temperature, warm.temperature) == (293.15, 303.15)
-    factor = shift_factor(scene.prony.known_material("rubber"), 303.15)
+    factor = scene.prony.known_material("rubber").shift(303.15)
     assert factor == pytest.approx(10 ** (-100 / 60))
     batch = Batch(tuple(relaxation_rows(scene, "normal")[:1]), scene_cell(scene).ravel())
     found = compute_relaxation(batch, scene.prony)
@@ -223,6 +225,10 @@ def test_temperature_shifts_the_times(tmp_path):
     np.testing.assert_allclose(ratio, factor, rtol=1e-12)
     wrong = violations(spoiled(materials=["rubber"], temperatures=["-40 degC"]), materials=tmp_path)
     assert "pole" in wrong["prony.temperatures.0"].allowed
+    wrong = violations(
+        spoiled(materials=["rubber"], temperatures=["-29.9 degC"]), materials=tmp_path
+    )
+    assert "stay in [1e-30, 1e+30] s" in wrong["prony.temperatures.0"].allowed
 
 
 @pytest.mark.parametrize(
@@ -238,6 +244,17 @@ def test_temperature_shifts_the_times(tmp_path):
         ({"bond": {"models": ["film"]}}, "prony.bond.models.0", "one of this scene's"),
         ({"methods": {"series": ["three"]}}, "prony.methods.series.0", "a series of this scene"),
         ({"checks": -1}, "prony.checks", "a whole number in [0, 100]"),
+        ({"bond": {"terms": 2, "error": 0.1}}, "prony.bond", "either terms or error"),
+        (
+            {"series": {"two": {"weights": [0.5, 0.5 + 1e-13], "times": [1, 2]}}},
+            "prony.series.two",
+            "add up to at most 1",
+        ),
+        (
+            {"spectrum": {"terms": [3], "decades": [2, 50], "centre": 1e20}},
+            "prony.spectrum.decades.1",
+            "times around 1e+20 s in",
+        ),
         (
             {"series": {"two": {"weights": [0.7, 0.5], "times": [1, 2]}}},
             "prony.series.two",

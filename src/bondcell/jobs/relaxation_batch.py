@@ -22,7 +22,6 @@ from bondcell.outputs import FREQUENCY, TIME
 from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.prony import Prony
-from bondcell.prony.shift import arrhenius, wlf
 from bondcell.relaxation import relaxation_series
 from bondcell.results.relaxation_names import (
     TERM_VARIABLES,
@@ -30,7 +29,6 @@ from bondcell.results.relaxation_names import (
     attributes,
     with_equal_terms,
 )
-from bondcell.scenes.materials import Material
 from bondcell.scenes.prony_block import PronyBlock, SeriesCase
 from bondcell.status import Status
 
@@ -110,18 +108,7 @@ def prony_of(block: PronyBlock, case: SeriesCase) -> Prony:
     if material is None or case.temperature in (None, material.temperature):
         return prony
     assert case.temperature is not None
-    return prony.shifted(shift_factor(material, case.temperature))
-
-
-def shift_factor(material: Material, temperature: float) -> float:
-    """Times at a temperature [K] over those of the material's file."""
-    assert material.temperature is not None
-    if material.wlf is not None:
-        constants = material.wlf.c_1, material.wlf.c_2
-        return float(wlf(temperature, material.temperature, *constants))
-    assert material.arrhenius is not None
-    energy = material.arrhenius.activation_energy
-    return float(arrhenius(temperature, material.temperature, energy))
+    return prony.shifted(material.shift(case.temperature))
 
 
 def relaxing_study(cell: Cell, case: SeriesCase) -> xr.Dataset:

@@ -119,7 +119,7 @@ class Relaxing:
 
 
 def _violations(cell: Cell, prony: Prony, convention: str) -> list[Violation]:
-    if convention not in CONVENTIONS:
+    if not isinstance(convention, str) or convention not in CONVENTIONS:
         return [Violation("convention", convention, f"one of {', '.join(CONVENTIONS)}")]
     bad = []
     if (prony.bulk is None) == (convention == "separate"):

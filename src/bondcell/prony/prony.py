@@ -6,23 +6,19 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
+from bondcell.prony.axis import checked_axis
 from bondcell.prony.chain import Chain, merged
+from bondcell.relaxing_ranges import FLUID, TIMES
 
 REFERENCES = ("instantaneous", "long_term", "absolute")
 """What weights may be relative to."""
 
-TIMES = (1e-30, 1e30)
-"""Range of relaxation times [s]."""
-
 LEAST_SHARE = 1e-120
 """Weights below this share of the whole are nothing."""
-
-FLUID = 4 * float(np.finfo(float).eps)
-"""A long-term modulus below this share of the instantaneous one is the round-off of a fluid's."""
 
 
 class PronyError(InputError):
@@ -154,15 +150,15 @@ class Prony:
         >>> Prony([0.5], [2.0]).relaxation_modulus([0.0, np.inf])
         array([1. , 0.5])
         """
-        return self.shear.relaxation(time)
+        return self.shear.relaxation(checked_axis("time", time))
 
     def storage_modulus(self, frequency: ArrayLike) -> FloatArray:
         """``G'(w)/G_0`` at angular frequencies [rad/s]."""
-        return np.asarray(self.shear.dynamic(frequency).real)
+        return np.asarray(self._dynamic(frequency).real)
 
     def loss_modulus(self, frequency: ArrayLike) -> FloatArray:
         """``G''(w)/G_0`` at angular frequencies [rad/s]."""
-        return np.asarray(self.shear.dynamic(frequency).imag)
+        return np.asarray(self._dynamic(frequency).imag)
 
     def loss_factor(self, frequency: ArrayLike) -> FloatArray:
         """``G''/G'`` at angular frequencies [rad/s]; inf for a fluid at rest.
@@ -172,15 +168,24 @@ class Prony:
         >>> Prony([0.5], [2.0]).loss_factor([0.5]).round(4)
         array([0.3333])
         """
-        complex_modulus = self.shear.dynamic(frequency)
+        complex_modulus = self._dynamic(frequency)
         with np.errstate(divide="ignore", invalid="ignore"):
             ratio = complex_modulus.imag / complex_modulus.real
         return np.where(complex_modulus.real > 0, ratio, np.inf if self.is_fluid else 0.0)
 
+    def _dynamic(self, frequency: ArrayLike) -> NDArray[np.complex128]:
+        return self.shear.dynamic(checked_axis("frequency", frequency))
+
     def shifted(self, factor: float) -> Prony:
         """The same material where every time is ``factor`` times as long, see `shift`."""
-        if not (np.isfinite(factor) and factor > 0):
+        number = isinstance(factor, int | float | np.number) and not isinstance(factor, bool)
+        if not (number and np.isfinite(factor) and factor > 0):
             raise PronyError([Violation("factor", factor, "(0, inf), finite")])
+        every = self.shear.times if self.bulk is None else [*self.shear.times, *self.bulk.times]
+        for k, time in enumerate(every):
+            if not TIMES[0] <= factor * time <= TIMES[1]:
+                allowed = f"[{TIMES[0]:g}, {TIMES[1]:g}] s after the shift by {factor:g}"
+                raise PronyError([Violation(f"times[{k}]", float(time), allowed)])
         other = object.__new__(Prony)
         other.__dict__.update(self.__dict__)
         other.shear = Chain(self.shear.equilibrium, self.shear.strengths, self.shear.times * factor)

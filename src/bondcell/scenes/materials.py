@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-import numpy as np
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from bondcell.errors import InputError, Violation
@@ -28,6 +28,12 @@ FOLDER = "materials"
 
 class MaterialError(InputError):
     """A material's file is wrong."""
+
+
+def _positive(modulus: float) -> float:
+    if not modulus > 0:
+        raise NotAllowed("a modulus above 0 Pa")
+    return modulus
 
 
 class Wlf(Block):
@@ -67,11 +73,16 @@ class Material(Block):
     weights: Annotated[tuple[Weight, ...], AfterValidator(some_terms)] | None = Field(
         None, description="Share of the modulus at t = 0 of each term."
     )
-    young: Modulus | None = Field(None, description="Young's modulus at t = 0 [Pa].")
-    moduli: Annotated[tuple[Modulus, ...], AfterValidator(some_terms)] | None = Field(
-        None, description="Young's modulus of each term [Pa], in place of weights and young."
+    young: Annotated[Modulus, AfterValidator(_positive)] | None = Field(
+        None, description="Young's modulus at t = 0 [Pa]."
     )
-    long_term: Modulus | None = Field(
+    moduli: (
+        Annotated[
+            tuple[Annotated[Modulus, AfterValidator(_positive)], ...], AfterValidator(some_terms)
+        ]
+        | None
+    ) = Field(None, description="Young's modulus of each term [Pa], in place of weights and young.")
+    long_term: Annotated[Modulus, AfterValidator(_positive)] | None = Field(
         None, description="Young's modulus that never relaxes [Pa], beside moduli; left out: none."
     )
     wlf: Wlf | None = Field(None, description="Shift with temperature.")
@@ -96,13 +107,24 @@ class Material(Block):
         """Whether other temperatures can be asked for."""
         return self.wlf is not None or self.arrhenius is not None
 
+    def shift(self, temperature: float) -> float:
+        """Times at a temperature [K] over those of the file; raises as `prony.shift` does."""
+        from bondcell.prony.shift import arrhenius, wlf
+
+        assert self.temperature is not None
+        if self.wlf is not None:
+            return float(wlf(temperature, self.temperature, self.wlf.c_1, self.wlf.c_2))
+        assert self.arrhenius is not None
+        energy = self.arrhenius.activation_energy
+        return float(arrhenius(temperature, self.temperature, energy))
+
     @property
     def instantaneous(self) -> float:
         """Young's modulus at t = 0 [Pa]."""
         if self.moduli is None:
             assert self.young is not None
             return self.young
-        return float(np.sum(self.moduli)) + (self.long_term or 0.0)
+        return math.fsum([*self.moduli, self.long_term or 0.0])
 
     @property
     def shares(self) -> tuple[float, ...]:
@@ -160,7 +182,10 @@ def parse_material(data: dict[str, Any], source: str | None = None) -> Material:
     try:
         material = Material.model_validate(without(data, nulls))
     except ValidationError as error:
-        violations += [found for _, found in found_violations(error, _known_keys)]
+        violations += [
+            found if path else Violation("material", ", ".join(map(str, data)), found.allowed)
+            for path, found in found_violations(error, _known_keys)
+        ]
     if violations:
         raise MaterialError({v.field: v for v in reversed(violations)}.values(), source)
     return material

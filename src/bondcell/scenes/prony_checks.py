@@ -6,8 +6,12 @@ from collections import Counter
 from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from bondcell.errors import Violation
+from bondcell.relaxing_ranges import TIMES
 from bondcell.results.names import result_names
+from bondcell.scenes.materials import Material
 from bondcell.scenes.prony_block import MOST_SERIES, PronyBlock
 from bondcell.scenes.violations import KeyPath
 
@@ -37,6 +41,7 @@ def prony_violations(scene: Scene, bad: Collection[KeyPath]) -> Iterator[Violati
     if block.own_modulus:
         yield from _own_modulus_violations(scene, block)
     yield from _temperature_violations(block)
+    yield from _spectrum_violations(block)
     yield from _size_violations(scene, block)
     names = [case.name for case in block.cases()]
     for name in (name for name, count in Counter(names).items() if count > 1):
@@ -69,12 +74,34 @@ def _temperature_violations(block: PronyBlock) -> Iterator[Violation]:
         if not material.has_shift:
             allowed = "a material with the constants of a shift, where temperatures are asked for"
             yield Violation(f"prony.materials.{i}", name, allowed)
-        elif material.wlf is not None and material.temperature is not None:
-            pole = material.temperature - material.wlf.c_2
-            for k, temperature in enumerate(block.temperatures):
-                if temperature <= pole:
-                    allowed = f"above {pole:g} K, the pole of the shift of {name}"
-                    yield Violation(f"prony.temperatures.{k}", f"{temperature:g} K", allowed)
+            continue
+        for k, temperature in enumerate(block.temperatures):
+            allowed = _wrong_shift(material, name, temperature)
+            if allowed:
+                yield Violation(f"prony.temperatures.{k}", f"{temperature:g} K", allowed)
+
+
+def _wrong_shift(material: Material, name: str, temperature: float) -> str:
+    """What temperatures are allowed if this one is not, else nothing."""
+    assert material.temperature is not None
+    if material.wlf is not None and temperature <= material.temperature - material.wlf.c_2:
+        pole = material.temperature - material.wlf.c_2
+        return f"above {pole:g} K, the pole of the shift of {name}"
+    with np.errstate(over="ignore"):
+        factor = material.shift(temperature)
+    if not (TIMES[0] <= factor * min(material.times) and factor * max(material.times) <= TIMES[1]):
+        return f"one where the times of {name} stay in [{TIMES[0]:g}, {TIMES[1]:g}] s"
+    return ""
+
+
+def _spectrum_violations(block: PronyBlock) -> Iterator[Violation]:
+    spectrum = block.spectrum
+    for k, decades in enumerate(spectrum.decades if spectrum else ()):
+        assert spectrum is not None
+        reach = 10.0 ** (decades / 2)
+        if not (TIMES[0] <= spectrum.centre / reach and spectrum.centre * reach <= TIMES[1]):
+            allowed = f"times around {spectrum.centre:g} s in [{TIMES[0]:g}, {TIMES[1]:g}] s"
+            yield Violation(f"prony.spectrum.decades.{k}", decades, allowed)
 
 
 def _size_violations(scene: Scene, block: PronyBlock) -> Iterator[Violation]:

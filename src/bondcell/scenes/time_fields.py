@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from functools import partial
 from typing import Annotated, Any, Literal, Self
@@ -9,12 +10,10 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import AfterValidator, BeforeValidator, Field, WithJsonSchema, model_validator
 
 from bondcell.cell import FloatArray
+from bondcell.relaxing_ranges import FLUID, TIMES
 from bondcell.scenes.fields import POSITIVE, Block, quantity_schema, whole_number_between
 from bondcell.scenes.quantities import EXAMPLES, NUMBER, NotAllowed, describe, parse_quantity
 from bondcell.scenes.spread import check_apart, spread
-
-TIMES = (1e-30, 1e30)
-"""Range of times [s]."""
 
 MOST_TERMS = 1000
 """Most terms of a series."""
@@ -117,8 +116,9 @@ def check_terms(weights: tuple[float, ...], times: tuple[float, ...], relative_t
     """Check that weights and times belong together, and that no more relaxes than there is."""
     if len(weights) != len(times):
         raise NotAllowed(f"as many times as weights: {len(times)} times, {len(weights)} weights")
-    if relative_to == "instantaneous" and sum(weights) > 1 + 1e-12:
-        raise NotAllowed(f"weights that add up to at most 1; these give {sum(weights):.9g}")
+    whole = math.fsum(weights)
+    if relative_to == "instantaneous" and whole > 1 + FLUID:
+        raise NotAllowed(f"weights that add up to at most 1; these give {whole:.17g}")
 
 
 class TimeSpan(Block):
