@@ -8,6 +8,10 @@ from snakemake.utils import min_version
 
 min_version("9.5")
 
+
+report: "workflow/report/workflow.rst"
+
+
 if "container" in config:  # with --sdm apptainer: the image in which jobs run, see bondcell.def
 
     container: config["container"]

@@ -1,6 +1,7 @@
 """The whole study end to end on small scenes; what is left out is neither run nor imported."""
 
 import re
+import zipfile
 
 import netCDF4
 import numpy as np
@@ -46,6 +47,17 @@ def test_whole_study(full_run):
     assert list((results / "full/figures").glob("*.svg"))
     assert not (results / "plain/accuracy.csv").exists()
     assert not list(results.rglob("*.tmp"))
+
+
+def test_report_of_snakemake(workspace):
+    done = workspace.snakemake("--report", "snakemake_report.zip")
+    assert done.returncode == 0, done.stdout
+    with zipfile.ZipFile(workspace / "snakemake_report.zip") as packed:
+        page = packed.read("snakemake_report/report.html").decode()
+    for word in ("All scenes", '"tables"', '"figures"', '"figure": "stiffness"', '"stability"'):
+        assert word in page, word
+    assert "Figures of the scene" in page
+    assert "A category for each scene" in page
 
 
 def test_progress_is_said_in_lines(full_run):

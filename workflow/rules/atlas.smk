@@ -8,16 +8,22 @@ rule atlas_tables:
             "results/{scene}/accuracy_by_region.csv",
             caption="../report/accuracy_by_region.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "accuracy by region"},
         ),
         best=report(
             "results/{scene}/best_models.csv",
             caption="../report/best_models.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "best models"},
         ),
         time=report(
             "results/{scene}/error_against_time.csv",
             caption="../report/error_against_time.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "error against time"},
         ),
     params:
         sources=contents("atlas_tables.py"),

@@ -9,6 +9,8 @@ rule figures:
             patterns=["{figure}.svg"],
             caption="../report/figure.rst",
             category="{scene}",
+            subcategory="figures",
+            labels={"figure": "{figure}"},
         ),
     params:
         sources=contents("figures.py"),

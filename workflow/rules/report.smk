@@ -5,7 +5,12 @@ rule report:
         sources=sources("report.py"),
         templates=data_files("report/templates"),
     output:
-        report("results/report.html", caption="../report/report.rst"),
+        report(
+            "results/report.html",
+            caption="../report/report.rst",
+            category="All scenes",
+            labels={"page": "the report"},
+        ),
     params:
         sources=contents("report.py"),
         digests=lambda _: {scene.name: scene.digest for scene in study_scenes()},

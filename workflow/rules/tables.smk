@@ -7,6 +7,8 @@ rule accuracy:
             "results/{scene}/accuracy.csv",
             caption="../report/accuracy.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "accuracy"},
         ),
     params:
         sources=contents("accuracy.py"),
@@ -25,6 +27,8 @@ rule convergence_table:
             "results/{scene}/convergence.csv",
             caption="../report/convergence.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "convergence"},
         ),
     params:
         sources=contents("convergence_table.py"),
@@ -44,6 +48,8 @@ rule stability:
             "results/{scene}/stability.csv",
             caption="../report/stability.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "stability"},
         ),
     params:
         sources=contents("stability.py"),
@@ -62,6 +68,8 @@ rule accuracy_over_time:
             "results/{scene}/accuracy_over_time.csv",
             caption="../report/accuracy_over_time.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "accuracy over time"},
         ),
     params:
         sources=contents("relaxation_tables.py"),
@@ -81,6 +89,8 @@ rule relaxation_stability:
             "results/{scene}/relaxation_stability.csv",
             caption="../report/relaxation_stability.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "relaxation stability"},
         ),
     params:
         sources=contents("relaxation_tables.py"),
@@ -101,6 +111,8 @@ rule bond_series:
             "results/{scene}/bond_series.csv",
             caption="../report/bond_series.rst",
             category="{scene}",
+            subcategory="tables",
+            labels={"table": "bond series"},
         ),
         netcdf="results/{scene}/bond_series.nc",
     params:

@@ -143,7 +143,10 @@ def _provenance(sections: Iterable[Section]) -> list[dict[str, Any]]:
     for section in sections:
         shared.setdefault(json.dumps(section.provenance), []).append(section.title)
     return [
-        {"scenes": listed(titles), "lines": _origin(json.loads(origin))}
+        {
+            "scenes": "All scenes" if len(shared) == 1 else listed(titles),
+            "lines": _origin(json.loads(origin)),
+        }
         for origin, titles in shared.items()
         if json.loads(origin)
     ]

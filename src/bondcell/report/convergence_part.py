@@ -173,6 +173,23 @@ def _model(row: Any) -> str:
     )
 
 
+def in_order(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows of each case with the reference's own ladder first, models last.
+
+    Parameters
+    ----------
+    table
+        See `bondcell.results.convergence.convergence_table`.
+    """
+    ladders = (STRUCTURED, GRADED, TRIANGLES, BASIS)
+    rank = [
+        ladders.index(method) if method in ladders else len(ladders) for method in table["method"]
+    ]
+    known = list(dict.fromkeys(table["case"]))
+    keys = list(zip(map(known.index, table["case"]), rank, strict=True))
+    return table.iloc[sorted(range(len(keys)), key=keys.__getitem__)]
+
+
 def convergence_lines(convergence: xr.Dataset) -> list[Table]:
     """A table of all levels for each case.
 
@@ -181,7 +198,7 @@ def convergence_lines(convergence: xr.Dataset) -> list[Table]:
     convergence
         A convergence study on ``(case, method, level)``.
     """
-    table = convergence_table(convergence)
+    table = in_order(convergence_table(convergence))
     tables = []
     for case, rows in table.groupby("case", sort=False):
         doubt = float(convergence["reference_error"].sel(case=case))

@@ -6,15 +6,14 @@ import base64
 import re
 from collections.abc import Container
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
-from urllib.parse import quote
 from xml.etree import ElementTree
+
+from markupsafe import Markup
 
 SMALL_SVG, SAVING = 120_000, 1.5
 """An SVG above so many bytes is embedded as its PNG if that is so many times smaller."""
-
-UNQUOTED = " !$&'()*+,/:;=?@[]{}|~^-_.\\`"
-"""Characters that stand for themselves in a quoted attribute's data address."""
 
 ORDER = (
     "relaxation",
@@ -62,7 +61,7 @@ class EmbeddedFigure:
     """
 
     name: str
-    source: str
+    source: Markup
     caption: str
     description: str
     path: Path
@@ -105,7 +104,39 @@ def shortened(svg: str) -> str:
     body = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", body, flags=re.DOTALL)
     body = re.sub(r"scale\([^)]*\)|-?\d+\.\d{3,}", _rounded, body)
     body = re.sub(r'(?<= d=")[^"]+', _path, body)
-    return re.sub(r">\s+<", "><", body).strip()
+    body = re.sub(r">\s+<", "><", body).strip()
+    return _MARKERS.sub(_styled_once, body)
+
+
+_MARKER = r'<use xlink:href="#[^"]+" x="[^"]+" y="[^"]+" style="[^"]+"/>'
+_MARKERS = re.compile(f"(?:{_MARKER}){{3,}}")
+
+
+def _styled_once(match: re.Match[str]) -> str:
+    """Markers in a row share their style instead of repeating it."""
+    found = []
+    markers = (marker.rpartition(' style="') for marker in re.findall(_MARKER, match[0]))
+    for style, same in groupby(markers, key=lambda parts: parts[2].removesuffix('"/>')):
+        found.append(f'<g style="{style}">{"".join(parts[0] + "/>" for parts in same)}</g>')
+    return "".join(found)
+
+
+def address(svg: str) -> Markup:
+    """A drawing as a data address that may stand between double quotes, almost as short as itself.
+
+    Parameters
+    ----------
+    svg
+        The drawing.
+
+    Examples
+    --------
+    >>> address('<svg id="a">100 % &amp;</svg>')
+    Markup("data:image/svg+xml,<svg id='a'>100 %25 &amp;amp;</svg>")
+    """
+    plain = " ".join(svg.split()).replace("%", "%25").replace("#", "%23")
+    quoted = plain.replace('"', "%22" if "'" in plain else "'")
+    return Markup(f"data:image/svg+xml,{quoted.replace('&', '&amp;')}")
 
 
 def _rounded(match: re.Match[str]) -> str:
@@ -129,9 +160,9 @@ def _embedded(path: Path) -> EmbeddedFigure:
     picture = path.with_suffix(".png")
     if picture.is_file() and len(short) > max(SMALL_SVG, SAVING * picture.stat().st_size):
         content = base64.b64encode(picture.read_bytes()).decode()
-        source = f"data:image/png;base64,{content}"
+        source = Markup(f"data:image/png;base64,{content}")
     else:
-        source = f"data:image/svg+xml,{quote(short, safe=UNQUOTED)}"
+        source = address(short)
     return EmbeddedFigure(
         name=path.stem,
         source=source,

@@ -124,7 +124,7 @@ def _label(name: str) -> str:
 
 
 def _value(value: Any) -> str:
-    return number(value, 6) if isinstance(value, int | float) else str(value)
+    return number(value, 12) if isinstance(value, int | float) else str(value)
 
 
 def _axis(axis: Any) -> str:

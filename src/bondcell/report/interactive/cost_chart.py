@@ -105,9 +105,9 @@ def _across(points: pd.DataFrame, against: Mapping[str, str]) -> Control:
             continue
         domain = (float(known.min()) / 1.5, 1.5 * float(known.max()))
         ticks = unit_label("s") if column == "seconds" else POWERS
-        axis: dict[str, Any] = {"title": title, "labelExpr": ticks, "tickCount": 7}
-        if values := decades(*domain):
-            axis["values"] = values
+        values = decades(*domain)
+        axis: dict[str, Any] = {"title": title, "labelExpr": ticks}
+        axis |= {"values": values} if values else {"tickCount": 7}
         scale = {"type": "log", "domain": list(domain), "nice": False}
         encoding = {"field": column, "type": "quantitative", "scale": scale, "axis": axis}
         options.append(Option(title, patches={f"{ENCODING}/x": encoding}))

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from bondcell.report.convergence_part import in_order
 from bondcell.report.interactive.cost_chart import COLUMNS
 from bondcell.results.atlas import accuracy_by_region, error_against_time
 from bondcell.results.convergence import convergence_table
@@ -36,7 +37,7 @@ def atlas_points(loads: Mapping[str, xr.Dataset]) -> pd.DataFrame:
 
 def ladder_points(convergence: xr.Dataset, *, models: bool = True) -> pd.DataFrame:
     """Every level of every discretisation by case, and the models of the case."""
-    table = convergence_table(convergence)
+    table = in_order(convergence_table(convergence))
     known = table[table["error"].notna()]
     if not models:
         known = known[known["level"].notna()]

@@ -178,8 +178,8 @@ def chosen(kind: str, axis: Axis, label: str, start: int = 0) -> Control:
 def _upward(quantity: Quantity) -> dict[str, Any]:
     scale = {"type": "log", "domain": list(quantity.domain), "clamp": True}
     values = decades(*quantity.domain)
-    axis = {"title": quantity.title, "labelExpr": quantity.ticks, "tickCount": 7}
-    axis |= {"values": values} if values else {}
+    axis: dict[str, Any] = {"title": quantity.title, "labelExpr": quantity.ticks}
+    axis |= {"values": values} if values else {"tickCount": 7}
     encoding = {"field": quantity.field, "type": "quantitative", "scale": scale, "axis": axis}
     line = {"type": "rule", "color": "#666", "strokeDash": [2, 3]}
     return {
@@ -190,9 +190,9 @@ def _upward(quantity: Quantity) -> dict[str, Any]:
 
 
 def _across(way: Way) -> Option:
-    axis: dict[str, Any] = {"title": way.title, "labelExpr": POWERS, "tickCount": 7}
-    if way.logarithmic and (values := decades(*way.bounds)):
-        axis["values"] = values
+    axis: dict[str, Any] = {"title": way.title, "labelExpr": POWERS}
+    values = decades(*way.bounds) if way.logarithmic else None
+    axis |= {"values": values} if values else {"tickCount": 7}
     if way.end:
         place, word = way.end
         axis["labelExpr"] = f"datum.value > {0.9 * place} ? '{word}' : ({POWERS})"

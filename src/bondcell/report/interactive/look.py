@@ -63,7 +63,8 @@ CONFIG: dict[str, Any] = {
         "tickColor": GREY,
         "labelColor": "#333",
         "titleColor": "#1d2329",
-        "labelOverlap": True,
+        "labelOverlap": "greedy",
+        "labelSeparation": 4,
     },
 }
 """What all interactive figures share; the page itself names them to screen readers."""
@@ -116,7 +117,7 @@ def decades(low: float, high: float, most: int = 9) -> list[float] | None:
     return [float(f"1e{power}") for power in range(first, last + 1, step)]
 
 
-TIP = 70.0
+TIP = 80.0
 """Size of a marker [px^2]."""
 
 
