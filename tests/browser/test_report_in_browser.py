@@ -210,7 +210,10 @@ def test_print_shows_everything_but_controls(fresh, tmp_path):
     fresh.emulate_media(media="print")
     fresh.evaluate("dispatchEvent(new Event('beforeprint'))")
     assert fresh.locator("details:not([open])").count() == 0
-    assert not fresh.locator(f"{SWEEP} .controls").is_visible()
+    assert not fresh.locator(f"{SWEEP} input").first.is_visible()
+    # What they are set to is part of the figure.
+    assert fresh.locator(f"{SWEEP} .slider:has([data-control=poisson_m]) output").is_visible()
+    assert not fresh.locator(f"{SWEEP} .slider:has([data-control=modulus_ratio])").is_visible()
     assert fresh.locator(f"{SWEEP} .plot svg").is_visible()
     fresh.evaluate("dispatchEvent(new Event('afterprint'))")
     assert fresh.locator("details:not([open])").count() > 0

@@ -6,14 +6,16 @@ import base64
 import re
 from collections.abc import Container
 from dataclasses import dataclass
+from io import BytesIO
 from itertools import groupby
 from pathlib import Path
 from xml.etree import ElementTree
 
 from markupsafe import Markup
+from PIL import Image
 
-SMALL_SVG, SAVING = 120_000, 1.5
-"""An SVG above so many bytes is embedded as its PNG if that is so many times smaller."""
+SMALL_SVG, SAVING = 80_000, 2.0
+"""A drawing above so many bytes is embedded as its PNG if that is so many times smaller."""
 
 ORDER = (
     "relaxation",
@@ -105,7 +107,31 @@ def shortened(svg: str) -> str:
     body = re.sub(r"scale\([^)]*\)|-?\d+\.\d{3,}", _rounded, body)
     body = re.sub(r'(?<= d=")[^"]+', _path, body)
     body = re.sub(r">\s+<", "><", body).strip()
+    body = _RASTER.sub(_repainted, body)
     return _MARKERS.sub(_styled_once, body)
+
+
+def with_palette(png: bytes) -> bytes:
+    """The picture with the 256 colours that serve it best, if that makes it smaller.
+
+    Parameters
+    ----------
+    png
+        A picture.
+    """
+    with Image.open(BytesIO(png)) as picture:
+        few = picture.convert("RGBA").quantize(256, Image.Quantize.FASTOCTREE)
+    made = BytesIO()
+    few.save(made, format="PNG", optimize=True)
+    return min(png, made.getvalue(), key=len)
+
+
+_RASTER = re.compile(r"(?<=data:image/png;base64,)[A-Za-z0-9+/=\s]+")
+
+
+def _repainted(match: re.Match[str]) -> str:
+    """A picture inside a drawing, with a palette."""
+    return base64.b64encode(with_palette(base64.b64decode(match[0]))).decode()
 
 
 _MARKER = r'<use xlink:href="#[^"]+" x="[^"]+" y="[^"]+" style="[^"]+"/>'
@@ -156,13 +182,12 @@ def _rank(name: str) -> int:
 def _embedded(path: Path) -> EmbeddedFigure:
     drawn = path.read_text(encoding="utf-8")
     root = ElementTree.fromstring(drawn)
-    short = shortened(drawn)
+    source = address(shortened(drawn))
     picture = path.with_suffix(".png")
-    if picture.is_file() and len(short) > max(SMALL_SVG, SAVING * picture.stat().st_size):
-        content = base64.b64encode(picture.read_bytes()).decode()
-        source = Markup(f"data:image/png;base64,{content}")
-    else:
-        source = address(short)
+    if len(source) > SMALL_SVG and picture.is_file():
+        content = base64.b64encode(with_palette(picture.read_bytes())).decode()
+        if len(source) > SAVING * len(content):
+            source = Markup(f"data:image/png;base64,{content}")
     return EmbeddedFigure(
         name=path.stem,
         source=source,
