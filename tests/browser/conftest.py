@@ -113,26 +113,28 @@ def make_study(results: Path) -> list[Scene]:
     return scenes
 
 
+COMPUTE = {"analytic": compute_analytic, "fe": compute_reference}
+
+
 def _cells(scene: Scene, folder: Path) -> None:
     study = build_study(scene)
     files: dict[str, list[Path]] = {"analytic": [], "fe": [], "relaxation": [], "convergence": []}
 
-    def keep(kind, name, result, digest):
+    def keep(kind, name, result):
         path = folder / "batches" / f"{name}.nc"
-        write_batch(result, path, digest)
+        write_batch(result, path, name)
         files[kind].append(path)
 
     for batch in plan(scene).new:
         kind = batch.name.partition("_")[0]
-        if kind == "analytic":
-            result = compute_analytic(batch)
-        elif kind == "fe":
-            result = compute_reference(batch)
+        if kind == "relaxation":
+            keep(kind, batch.name, compute_relaxation(batch, scene.prony))
         else:
-            result = compute_relaxation(batch, scene.prony)
-        keep(kind, batch.name, result, batch.name)
+            keep(kind, batch.name, COMPUTE[kind](batch))
     if scene.convergence is not None:
-        keep("convergence", "convergence", run_convergence(scene), scene.convergence_digest)
+        path = folder / "batches" / "convergence.nc"
+        write_batch(run_convergence(scene), path, scene.convergence_digest)
+        files["convergence"].append(path)
     points = scene, study, files["analytic"], files["fe"]
     groups = collect_other_loads(*points, files["relaxation"])
     groups |= collect_convergence(scene, files["convergence"])
