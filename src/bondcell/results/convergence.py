@@ -167,7 +167,8 @@ def _model_rows(of_case: xr.Dataset) -> list[dict[str, Any]]:
         at = of_case.sel({MODEL: model})
         if at["model_status"] == Status.not_computed:
             continue
-        row = {name: at[f"model_{name}"].item() for name in ("error", *ATTRIBUTES, "status")}
+        wanted = [name for name in ("error", *ATTRIBUTES, "status") if f"model_{name}" in at]
+        row = {name: at[f"model_{name}"].item() for name in wanted}
         row |= _stiffness(at, "model_")
         rows.append(row | {"method": str(model)} | _status(row["status"]))
     return rows
