@@ -79,3 +79,15 @@ def test_space_is_refused():
     own = lattice([[0, 0, 0], [1, 0, 0]], bonds([[0, 1]], 2.0))
     with pytest.raises(InputError, match="points"):
         solve_large(own, True, 0.0)
+
+
+def test_what_is_linear_only_is_refused():
+    own = lattice(
+        POINTS[:3],
+        bonds([[0, 1], [1, 2]], 1.0, 1.0, 1.0, offset=0.1),
+        pockets([[0, 1, 2]], 1.0, twist=0.1),
+    )
+    with pytest.raises(InputError) as caught:
+        solve_large(own, True, 0.0)
+    fields = [violation.field for violation in caught.value.violations]
+    assert fields == ["bonds.offset", "pockets.turning, pockets.twist"]

@@ -24,7 +24,7 @@ def random_lattice(dimension, seed=0, **changes):
     }
     own = bonds(pairs, pivot=rng.uniform(0.3, 0.7, len(pairs)), **draw | changes)
     corners = triangles(pairs, len(points))[:6]
-    return lattice(points, own, pockets(corners, 0.3, -0.01))
+    return lattice(points, own, pockets(corners, 0.3, -0.01, -0.02, 0.05))
 
 
 def specimen(own, **more):
@@ -161,6 +161,28 @@ def test_specimen_is_its_mirror_image():
     left = solve(own, held[mirror], -values[mirror])
     expected = right.motion[mirror] * [-1, 1, -1]
     np.testing.assert_allclose(left.motion, expected, atol=1e-15)
+
+
+def test_offset_is_a_lever_of_the_normal_force():
+    """Turning the second body opens a bond that acts to the left of the nodes' line."""
+    own = lattice([[0, 0], [2, 0]], bonds([[0, 1]], 3.0, offset=0.5), rotates=True)
+    turned = solve(own, True, [[0, 0, 0], [0, 0, 1e-3]])
+    assert turned.bond_forces[0, 0] == pytest.approx(-3 * 0.5e-3)
+    assert turned.reactions[1, 2] == pytest.approx(3 * 0.5**2 * 1e-3)
+    line = bonds([[0, 1]], 1.0, 1.0, 1.0, 1.0, offset=0.5)
+    assert "bonds.offset" in str(refusal(lattice, [[0, 0, 0], [1, 0, 0]], line))
+
+
+def test_pocket_resists_rotations_of_its_corners():
+    corners = np.array([[0, 0], [1, 0], [0.4, 0.8]])
+    own = lattice(corners, bonds([[0, 1]], 0.0), pockets([[0, 1, 2]], 0.0, 0.0, 2.0, 3.0))
+    assert own.rotates
+    turn = 1e-3
+    whole = np.column_stack([turn * corners @ [[0, 1], [-1, 0]], np.full(3, turn)])
+    assert solve(own, True, whole).energy == pytest.approx(0, abs=1e-20)
+    places = np.column_stack([np.zeros((3, 2)), [turn, 2 * turn, 3 * turn]])
+    expected = (2 * (2 * turn) ** 2 + 3 * 2 * turn**2) / 2
+    assert solve(own, True, places).energy == pytest.approx(expected)
 
 
 def test_iterations_find_what_elimination_finds(monkeypatch):

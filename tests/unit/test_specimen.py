@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 
 from bondcell.errors import InputError
-from bondcell.lattice.specimen_geometry import DISPLACEMENT
+from bondcell.lattice.specimen_geometry import DISPLACEMENT, specimen_packing
 from bondcell.specimen.bonds import Material, bond_springs, wall_spring
 from bondcell.specimen.bound import softest, softest_lattice
 from bondcell.specimen.compare import compare
-from bondcell.specimen.lattice_variants import pocket_springs, specimen_lattice
+from bondcell.specimen.full_lattice import FARTHEST, borders
+from bondcell.specimen.lattice_variants import specimen_lattice
 from bondcell.specimen.paper import printed_stiffness
 from bondcell.specimen.solid_half import extrapolate
 from bondcell.specimen.specimen import specimen
@@ -77,11 +78,23 @@ def test_bending_spring_is_the_cell_s():
     assert springs["torsion"] == pytest.approx(0.52187948, rel=1e-6)
 
 
-def test_pocket_springs_are_what_the_bonds_leave_open():
-    springs = {"normal": 2.0, "shear": 1.0}
-    square = 0.0155**2
-    assert pocket_springs((3 * square, 2.25 * square), springs) == pytest.approx((0, 0), abs=1e-18)
-    assert pocket_springs((3 * square + 8, 0.0), springs)[0] == pytest.approx(2)
+def test_borders_of_the_specimen():
+    """Top, both sides; not the bottom, where a wall cuts the spheres."""
+    packed = specimen_packing()
+    points, pairs = packed.centres[:, :2], packed.neighbours(1e-3)
+    numbers, sides, covers = borders(points, pairs)
+    assert [tuple(pairs[k] + 1) for k in numbers] == [
+        (1, 2), (1, 6), (2, 3), (3, 4), (4, 5), (5, 11), (6, 12), (11, 18),
+    ]  # fmt: skip
+    middle = points[pairs[numbers]].mean(axis=1)
+    along = points[pairs[numbers, 1]] - points[pairs[numbers, 0]]
+    outward = sides[:, None] * np.column_stack([-along[:, 1], along[:, 0]])
+    assert (outward[[0, 2, 3, 4], 1] > 0).all()
+    assert (outward[:, 0] * middle[:, 0] > -1e-12).all()
+    top = 36e-3 - points[0, 1]
+    assert covers[0] == pytest.approx(top, abs=1e-8)
+    assert covers.max() == FARTHEST
+    np.testing.assert_array_equal(np.sort(covers[[1, 6]]), np.sort(covers[[5, 7]]))
 
 
 @pytest.mark.parametrize("distance", [8e-3, 20e-3, 7.4])

@@ -8,7 +8,7 @@ from scipy.linalg import pinvh
 from scipy.sparse import bsr_array, csr_array
 
 from bondcell.cell import FloatArray
-from bondcell.fem.blocks import hold, scaled
+from bondcell.fem.blocks import hold, product, scaled
 from bondcell.fem.smoother import Chebyshev
 
 COARSEST = 100
@@ -63,7 +63,7 @@ class Aggregates:
         self._down = [form(level.R) for level in levels[:-1]]
         self._up = [form(level.P) for level in levels[:-1]]
         self._smoothers = [
-            Chebyshev(bsr_array(level.A), np.ones(level.A.shape[0]), product=own)
+            Chebyshev(bsr_array(level.A), np.ones(level.A.shape[0]), quicker=own)
             for level, own in zip(levels[:-1], self._matrices, strict=True)
         ]
         self._coarsest = pinvh(levels[-1].A.toarray(), rtol=1e-12)
@@ -77,6 +77,6 @@ class Aggregates:
             return np.asarray(self._coarsest @ right)
         smoother = self._smoothers[level]
         answer = smoother.smooth(right)
-        rest = right - self._matrices[level] @ answer
-        answer += self._up[level] @ self._cycle(self._down[level] @ rest, level + 1)
+        rest = right - product(self._matrices[level], answer)
+        answer += product(self._up[level], self._cycle(product(self._down[level], rest), level + 1))
         return smoother.smooth(right, answer)

@@ -11,6 +11,24 @@ from bondcell.cell import FloatArray
 IndexArray = NDArray[np.int64]
 
 
+FEW = 4
+"""Columns up to which a product goes by columns."""
+
+
+def product(matrix: bsr_array | csr_array, columns: FloatArray) -> FloatArray:
+    """``A x``, shape (unknowns, cases).
+
+    Few columns go one by one: the kernel for a single vector takes half the time of that for
+    several.
+    """
+    if columns.shape[1] > FEW:
+        return np.asarray(matrix @ columns)
+    result = np.empty((matrix.shape[0], columns.shape[1]), dtype=columns.dtype)
+    for k in range(columns.shape[1]):
+        result[:, k] = matrix @ columns[:, k]
+    return result
+
+
 class BlockAssembler:
     """Sum of element matrices, added chunk by chunk.
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import bsr_array, csr_array
 
 from bondcell.cell import FloatArray
-from bondcell.fem.blocks import block_diagonal
+from bondcell.fem.blocks import block_diagonal, product
 
 DEGREE = 2
 """Products with the matrix in one smoothing."""
@@ -25,8 +25,11 @@ class Chebyshev:
         The matrix.
     free
         One where unknowns are free, zero where they are held, shape (unknowns,).
-    product
-        The same matrix in another format, whose products are quicker.
+    quicker
+        The same matrix in another format, whose products are quicker, or in single precision,
+        which is then that of the smoothing.
+    degree
+        Products with the matrix in one smoothing.
 
     Notes
     -----
@@ -35,10 +38,14 @@ class Chebyshev:
     """
 
     def __init__(
-        self, matrix: bsr_array, free: FloatArray, product: csr_array | None = None
+        self,
+        matrix: bsr_array,
+        free: FloatArray,
+        quicker: csr_array | None = None,
+        degree: int = DEGREE,
     ) -> None:
-        self._matrix = matrix if product is None else product
-        self._free = free[:, np.newaxis]
+        self._matrix = matrix if quicker is None else quicker
+        self._degree = degree
         width = matrix.blocksize[0]
         mask = free.reshape(-1, width)
         blocks = block_diagonal(matrix) * mask[:, :, np.newaxis] * mask[:, np.newaxis]
@@ -46,20 +53,18 @@ class Chebyshev:
         alone = own <= 0
         own += alone
         usable = ~alone
-        self._inverse = np.linalg.inv(blocks) * usable[:, :, np.newaxis] * usable[:, np.newaxis]
-        self._largest = _SAFETY * self._largest_eigenvalue()
+        inverse = np.linalg.inv(blocks) * usable[:, :, np.newaxis] * usable[:, np.newaxis]
+        every = np.arange(len(inverse) + 1)
+        inverse = inverse.astype(self._matrix.dtype)
+        self._inverse = bsr_array((inverse, every[:-1], every), shape=matrix.shape)
+        self._largest = _SAFETY * self._largest_eigenvalue(free)
 
-    def _scaled(self, residual: FloatArray) -> FloatArray:
-        """``D^-1 r``, shape (unknowns, cases)."""
-        width = self._inverse.shape[1]
-        rows = residual.reshape(-1, width, residual.shape[1])
-        return np.asarray((self._inverse @ rows).reshape(residual.shape))
-
-    def _largest_eigenvalue(self) -> float:
-        vector = np.random.default_rng(0).normal(size=self._free.shape) * self._free
+    def _largest_eigenvalue(self, free: FloatArray) -> float:
+        vector = np.random.default_rng(0).normal(size=free.size) * free
+        vector = vector.astype(self._matrix.dtype)
         value = 1.0
         for _ in range(_POWER_STEPS):
-            vector = self._scaled(self._matrix @ (vector / np.linalg.norm(vector)))
+            vector = self._inverse @ (self._matrix @ (vector / np.linalg.norm(vector)))
             value = float(np.linalg.norm(vector))
         return value
 
@@ -67,15 +72,15 @@ class Chebyshev:
         """Improve ``start`` (default zero) as a solution of ``A x = right``."""
         low, high = self._largest / _FRACTION, self._largest
         middle, half = (high + low) / 2, (high - low) / 2
-        residual = right if start is None else right - self._matrix @ start
-        step = self._scaled(residual) / middle
+        residual = right if start is None else right - product(self._matrix, start)
+        step = product(self._inverse, residual) / middle
         answer = step.copy() if start is None else start + step
         ratio = half / middle
-        for _ in range(DEGREE - 1):
-            residual = right - self._matrix @ answer
+        for _ in range(self._degree - 1):
+            residual = right - product(self._matrix, answer)
             following = 1 / (2 * middle / half - ratio)
             step *= following * ratio
-            step += (2 * following / half) * self._scaled(residual)
+            step += (2 * following / half) * product(self._inverse, residual)
             answer += step
             ratio = following
         return answer

@@ -18,6 +18,8 @@ _ROWS = {
     3: ("normal", "shear", "shear", "bending", "bending", "torsion"),
 }
 
+_RANGES = {"pivot": (0.0, 1.0, "[0, 1]"), "offset": (-np.inf, np.inf, "finite numbers, m")}
+
 
 @dataclass(frozen=True)
 class Bonds:
@@ -34,6 +36,9 @@ class Bonds:
     pivot
         Where on the bond the shear force causes no moment, as a fraction of its length from the
         first node; 1/2 for equal particles.
+    offset
+        How far beside the nodes the normal force acts [m], to the left of the way from the first
+        node to the second; of a bond with more matrix on one side. In the plane only.
     """
 
     first: NDArray[np.int64]
@@ -43,6 +48,7 @@ class Bonds:
     bending: FloatArray
     torsion: FloatArray
     pivot: FloatArray
+    offset: FloatArray
 
     @property
     def count(self) -> int:
@@ -74,6 +80,7 @@ def bonds(
     bending: ArrayLike = 0.0,
     torsion: ArrayLike = 0.0,
     pivot: ArrayLike = 0.5,
+    offset: ArrayLike = 0.0,
 ) -> Bonds:
     """Bonds between pairs of nodes.
 
@@ -81,7 +88,7 @@ def bonds(
     ----------
     pairs
         Shape (bonds, 2).
-    normal, shear, bending, torsion, pivot
+    normal, shear, bending, torsion, pivot, offset
         As in `Bonds`; single numbers hold for all.
 
     Raises
@@ -96,7 +103,8 @@ def bonds(
     """
     ends = np.asarray(pairs, dtype=np.int64).reshape(-1, 2)
     given = {
-        "normal": normal, "shear": shear, "bending": bending, "torsion": torsion, "pivot": pivot
+        "normal": normal, "shear": shear, "bending": bending, "torsion": torsion,
+        "pivot": pivot, "offset": offset,
     }  # fmt: skip
     arrays, violations = {}, []
     for name, value in given.items():
@@ -106,8 +114,8 @@ def bonds(
             violations.append(Violation(f"bonds.{name}", array.shape, allowed))
             continue
         arrays[name] = np.broadcast_to(array, len(ends)).copy()
-        top, allowed = (1.0, "[0, 1]") if name == "pivot" else (np.inf, "[0, inf)")
-        good = np.isfinite(array) & (array >= 0) & (array <= top)
+        low, top, allowed = _RANGES.get(name, (0.0, np.inf, "[0, inf)"))
+        good = np.isfinite(array) & (array >= low) & (array <= top)
         if not good.all():
             worst = float(np.atleast_1d(array)[~np.atleast_1d(good)][0])
             violations.append(Violation(f"bonds.{name}", worst, allowed))
@@ -134,24 +142,24 @@ def strains(points: FloatArray, bonds: Bonds) -> FloatArray:
     Notes
     -----
     With n the bond's direction, t across it, L its length, p the pivot:
-    normal ``n.(u_j - u_i)``; shear ``t.(u_j - u_i - L (p th_i + (1-p) th_j) x n)``, the sliding of
-    the two bodies where the shear force acts; bending ``t.(th_j - th_i)``; torsion
-    ``n.(th_j - th_i)``.
+    normal ``n.(u_j - u_i)``, in the plane less ``o (th_j - th_i)`` with the offset o; shear
+    ``t.(u_j - u_i - L (p th_i + (1-p) th_j) x n)``, the sliding of the two bodies where the shear
+    force acts; bending ``t.(th_j - th_i)``; torsion ``n.(th_j - th_i)``.
     """
     length = bond_lengths(points, bonds)
     along = (points[bonds.second] - points[bonds.first]) / length[:, np.newaxis]
     arms = np.stack([bonds.pivot * length, (1 - bonds.pivot) * length])
     if points.shape[1] == 2:
-        return _plane(along, arms)
+        return _plane(along, arms, bonds.offset)
     return _space(along, arms)
 
 
-def _plane(along: FloatArray, arms: FloatArray) -> FloatArray:
+def _plane(along: FloatArray, arms: FloatArray, offset: FloatArray) -> FloatArray:
     result = np.zeros((len(along), 3, 6))
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     for node, sign in ((0, -1.0), (1, 1.0)):
         shift, turn = slice(3 * node, 3 * node + 2), 3 * node + 2
-        result[:, 0, shift] = sign * along
+        result[:, 0, shift], result[:, 0, turn] = sign * along, -sign * offset
         result[:, 1, shift] = sign * across
         result[:, 1, turn] = -arms[node]
         result[:, 2, turn] = sign

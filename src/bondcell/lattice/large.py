@@ -61,7 +61,7 @@ def solve_large(
     Raises
     ------
     InputError
-        The lattice is not plane.
+        The lattice is not plane, or has offsets or pockets that resist rotations.
     BondcellError
         Newton's method does not converge.
 
@@ -83,8 +83,7 @@ def solve_large(
     >>> abs(round(solve_large(pair, True, quarter).energy, 12))
     0.0
     """
-    if lattice.dimension != 2:
-        raise InputError([Violation("points", lattice.points.shape, "shape (nodes, 2)")])
+    _check(lattice)
     shape = (lattice.count, lattice.width)
     fixed = np.broadcast_to(np.asarray(held, dtype=bool), shape)
     given = np.where(fixed, np.broadcast_to(np.asarray(values, dtype=np.float64), shape), 0.0)
@@ -108,6 +107,19 @@ def solve_large(
     pulls = np.zeros_like(whole)
     pulls[:, : lattice.width] = reactions
     return LargeSolution(whole, pulls, energies, newton)
+
+
+def _check(lattice: Lattice) -> None:
+    violations = []
+    if lattice.dimension != 2:
+        violations.append(Violation("points", lattice.points.shape, "shape (nodes, 2)"))
+    if lattice.bonds.offset.any():
+        violations.append(Violation("bonds.offset", lattice.bonds.offset.tolist(), "0 m"))
+    if lattice.pockets.turns:
+        constants = lattice.pockets.constants()[:, 3:5].tolist()
+        violations.append(Violation("pockets.turning, pockets.twist", constants, "0 J"))
+    if violations:
+        raise InputError(violations)
 
 
 def _newton(
@@ -202,7 +214,7 @@ def _add_pockets(
     own, width = lattice.pockets, lattice.width
     if not own.count:
         return 0.0
-    rows = lattice.pocket_strains().reshape(own.count, 3, 3, width)[..., :2]
+    rows = lattice.pocket_strains()[:, :3].reshape(own.count, 3, 3, width)[..., :2]
     # Gradients of the linear functions, in the triangle's own axes, back from its strains.
     corners = lattice.points[own.corners]
     one = corners[:, 1] - corners[:, 0]

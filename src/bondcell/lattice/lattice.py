@@ -12,7 +12,7 @@ from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.fem.blocks import BlockAssembler, IndexArray
 from bondcell.lattice.bonds import MODES, Bonds, strains
-from bondcell.lattice.pockets import Pockets, pockets, triangle_strains
+from bondcell.lattice.pockets import Pockets, pocket_strains, pockets
 
 CHUNK = 50_000
 """Bonds whose element matrices are held at once."""
@@ -69,16 +69,8 @@ class Lattice:
         return full if self.rotates else full[:, :1]
 
     def pocket_strains(self) -> FloatArray:
-        """Strains of the pockets by the motions of the corners, shape (pockets, 3, 3 width)."""
-        shifts = triangle_strains(self.points, self.pockets.corners)
-        full = np.zeros((self.pockets.count, 3, 3, self.width))
-        full[..., : self.dimension] = shifts
-        return full.reshape(self.pockets.count, 3, 3 * self.width)
-
-    def pocket_stiffness(self) -> FloatArray:
-        """Stiffness of each of `pocket_strains`, shape (pockets, 3)."""
-        own = self.pockets
-        return np.stack([own.stiffness, own.deviator, own.deviator], axis=1)
+        """Strains of the pockets by the motions of the corners, shape (pockets, 7, 3 width)."""
+        return pocket_strains(self.points, self.pockets.corners, self.width)
 
     def matrix(self) -> bsr_array:
         """Stiffness matrix; unknown ``width n + c`` is component c of node n."""
@@ -95,7 +87,7 @@ class Lattice:
         total = bsr_array(total + own.matrix())
         if self.pockets.count:
             three = BlockAssembler(self.pockets.corners, self.count, self.width)
-            local = _element_matrices(self.pocket_strains(), self.pocket_stiffness())
+            local = _element_matrices(self.pocket_strains(), self.pockets.constants())
             three.add(slice(None), local)
             total = bsr_array(total + three.matrix())
         return total
@@ -124,7 +116,8 @@ def lattice(
     ground
         Stiffness of springs to the ground, broadcast to (nodes, width) [N/m, N m/rad].
     rotates
-        Whether nodes have rotations. Default: if a bond resists more than its lengthening.
+        Whether nodes have rotations. Default: if a bond resists more than its lengthening, or a
+        pocket rotations.
 
     Raises
     ------
@@ -147,13 +140,15 @@ def lattice(
         raise InputError([Violation("points", where.shape, "shape (nodes, 2) or (nodes, 3)")])
     three = pockets_ if pockets_ is not None else pockets(np.zeros((0, 3), dtype=np.int64), 0.0)
     if rotates is None:
-        rotates = any(getattr(bonds, mode).any() for mode in MODES[3][1:])
+        rotates = three.turns or any(getattr(bonds, mode).any() for mode in MODES[3][1:])
     violations = _unknown_nodes("bonds", np.stack([bonds.first, bonds.second], 1), len(where))
     violations += _unknown_nodes("pockets", three.corners, len(where))
     width = node_width(where.shape[1], rotates)
     springs = np.asarray(ground, dtype=np.float64)
     if not (np.isfinite(springs) & (springs >= 0)).all():
         violations.append(Violation("ground", springs.tolist(), "[0, inf) N/m, N m/rad"))
+    if where.shape[1] == 3 and bonds.offset.any():
+        violations.append(Violation("bonds.offset", bonds.offset.tolist(), "0 m in space"))
     if violations:
         raise InputError(violations)
     result = Lattice(

@@ -148,6 +148,6 @@ def _by_mode(lattice: Lattice, motion: FloatArray) -> tuple[FloatArray, dict[str
         energies[mode] += energy
     corners = motion[lattice.pockets.corners].reshape(lattice.pockets.count, 3 * lattice.width)
     change = np.einsum("psu,pu->ps", lattice.pocket_strains(), corners)
-    energies["pocket"] = float(0.5 * (lattice.pocket_stiffness() * change**2).sum())
+    energies["pocket"] = float(0.5 * (lattice.pockets.constants() * change**2).sum())
     energies["ground"] = float(0.5 * (lattice.ground * motion**2).sum())
     return forces, energies

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.sparse import bsr_array
 
 from bondcell.cell import FloatArray
+from bondcell.fem.blocks import product
 from bondcell.fem.krylov import TOLERANCE, conjugate_gradients
 from bondcell.solid.multigrid import PMultigrid
 
@@ -37,7 +38,7 @@ class MeanSystem:
         self._lifts = lifts @ np.linalg.inv(means.T @ lifts)
 
     def _apply(self, x: FloatArray) -> FloatArray:
-        return np.asarray(self._balanced((self._matrix @ x) * self._free))
+        return np.asarray(self._balanced((product(self._matrix, x)) * self._free))
 
     def _balanced(self, forces: FloatArray) -> FloatArray:
         """``P^T f``: forces without those that the prescribed means take."""
@@ -67,10 +68,10 @@ class MeanSystem:
             Displacements (unknowns, cases), the forces l (functionals, cases), iterations.
         """
         start = self._lifts @ given
-        right = self._balanced((forces - self._matrix @ start) * self._free)
+        right = self._balanced((forces - product(self._matrix, start)) * self._free)
         step, iterations = conjugate_gradients(self._apply, self._precondition, right, tolerance)
         answer = start + step
-        pull = self._lifts.T @ ((self._matrix @ answer - forces) * self._free)
+        pull = self._lifts.T @ ((product(self._matrix, answer) - forces) * self._free)
         return answer, pull, iterations
 
     def unbalanced(self, forces: FloatArray) -> FloatArray:

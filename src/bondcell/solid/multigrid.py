@@ -1,4 +1,4 @@
-"""Preconditioner by polynomial order: second-order functions, first-order ones, aggregates."""
+"""Preconditioner by polynomial order: all functions, first-order ones, aggregates."""
 
 from __future__ import annotations
 
@@ -8,10 +8,14 @@ from scipy.sparse import bsr_array, csr_array
 
 from bondcell.cell import FloatArray
 from bondcell.fem.aggregates import Aggregates
+from bondcell.fem.blocks import product
 from bondcell.fem.smoother import Chebyshev
 from bondcell.lattice.rigid_modes import rigid_modes
 from bondcell.solid.stiffness import Stiffness
 from bondcell.solid.tets import Tets
+
+DEGREES = {2: 2, 3: 3, 4: 4}
+"""Order of the functions -> products in one smoothing: the higher, the more is rough."""
 
 
 class PMultigrid:
@@ -28,23 +32,25 @@ class PMultigrid:
 
     Notes
     -----
-    Chebyshev smoothing on the second-order functions before and after one cycle of smoothed
-    aggregation (rigid modes as near null space) on the first-order ones.
+    Chebyshev smoothing on the functions of the mesh's order before and after one cycle of smoothed
+    aggregation (rigid modes as near null space) on the first-order ones. Smoothing is in single
+    precision: an approximate inverse needs no more, and half of the time goes into fetching the
+    matrix.
     """
 
     def __init__(
         self, mesh: Tets, stiffness: Stiffness, held: NDArray[np.bool_], many: bool = False
     ) -> None:
         self.free = (~held).astype(np.float64).ravel()
-        # Rows of numbers are quicker than blocks where several vectors are multiplied at once.
-        self.matrix = _free_rows(stiffness.fine, self.free) if many else stiffness.fine
-        self._smoother = Chebyshev(stiffness.fine, self.free, self.matrix)
-        self._corners, self._ends = mesh.corners, mesh.ends
-        rows = np.repeat(np.arange(len(mesh.ends)), 2)
-        halves = np.full(rows.size, 0.5)
-        shape = (len(mesh.ends), mesh.corners)
-        self._average = csr_array((halves, (rows, mesh.ends.ravel())), shape=shape)
-        self._back = csr_array(self._average.T)
+        # Rows of numbers are quicker than blocks.
+        rows = _free_rows(stiffness.fine, self.free)
+        self.matrix = rows if many else stiffness.fine
+        self._rows = csr_array(
+            (rows.data.astype(np.float32), rows.indices, rows.indptr), rows.shape
+        )
+        self._smoother = Chebyshev(stiffness.fine, self.free, self._rows, DEGREES[mesh.order])
+        self._corners = mesh.corners
+        self._average, self._back = mesh.linear, csr_array(mesh.linear.T)
         coarse_held = held[: mesh.corners]
         self._coarse_free = self.free[: 3 * mesh.corners, np.newaxis]
         modes = rigid_modes(mesh.points[: mesh.corners], rotates=True)[:, :3]
@@ -59,7 +65,7 @@ class PMultigrid:
         return top * self._coarse_free
 
     def extend(self, coarse: FloatArray) -> FloatArray:
-        """First-order functions in terms of second-order ones, on the free unknowns."""
+        """First-order functions in terms of the mesh's own, on the free unknowns."""
         cases = coarse.shape[1]
         inner = coarse * self._coarse_free
         middle = (self._average @ inner.reshape(-1, 3 * cases)).reshape(-1, cases)
@@ -67,12 +73,14 @@ class PMultigrid:
 
     def __call__(self, residual: FloatArray) -> FloatArray:
         """Approximate ``A^-1 r`` on the free unknowns, shape (unknowns, cases)."""
-        free = self.free[:, np.newaxis]
-        right = residual * free
+        right = residual * self.free[:, np.newaxis]
+        size = np.abs(right).max(axis=0)
+        size[size == 0] = 1.0
+        right = (right / size).astype(np.float32)
         answer = self._smoother.smooth(right)
-        rest = (right - self.matrix @ answer) * free
+        rest = right - product(self._rows, answer)
         answer += self.extend(self._aggregates(self.restrict(rest)))
-        return self._smoother.smooth(right, answer)
+        return self._smoother.smooth(right, answer) * size
 
 
 def _free_rows(matrix: bsr_array, free: FloatArray) -> csr_array:

@@ -76,13 +76,13 @@ class NeoHookean:
         def local(own: IndexArray, gradients: FloatArray, weights: FloatArray) -> FloatArray:
             _, back, volume = self._gradient(own, gradients, field)
             lam, mu = self._lam[own, None], self._mu[own, None]
-            count, points = weights.shape
-            now = (gradients @ back).reshape(count, points, 30)
+            count, points, nodes = gradients.shape[:3]
+            now = (gradients @ back).reshape(count, points, 3 * nodes)
             turned = now.transpose(0, 2, 1)
             result = (turned * (lam * weights)[:, None]) @ now
             mixed = (turned * ((mu - lam * np.log(volume)) * weights)[:, None]) @ now
-            shape = (count, 10, 3, 10, 3)
-            result += mixed.reshape(shape).transpose(0, 1, 4, 3, 2).reshape(count, 30, 30)
+            shape = (count, nodes, 3, nodes, 3)
+            result += mixed.reshape(shape).transpose(0, 1, 4, 3, 2).reshape(result.shape)
             natural = np.einsum("eqaj,eqbj,eq->eab", gradients, gradients, mu * weights)
             view = result.reshape(shape)
             for i in range(3):

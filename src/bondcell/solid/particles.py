@@ -7,13 +7,11 @@ import numpy as np
 from bondcell.cell import FloatArray
 from bondcell.fem.blocks import IndexArray
 from bondcell.lattice.packing import Packing
-from bondcell.solid.elements import jacobians, quadrature, shape_gradients, shape_values
+from bondcell.solid.elements import QUADRATURE, jacobians, quadrature, shape_gradients, shape_values
 from bondcell.solid.tets import Tets
 
 MOTIONS = ("x", "y", "rotation")
 """Motions in the plane of the specimen: displacements of the centre, rotation about z."""
-
-_ORDER = 5
 
 
 def rigid_motions(mesh: Tets, packing: Packing, particles: IndexArray) -> FloatArray:
@@ -54,13 +52,14 @@ def mean_motions(mesh: Tets, packing: Packing) -> FloatArray:
     ``rotation = integral of (x u_y - y u_x) / integral of (x^2 + y^2)``, and the displacement of
     the sphere's centre is the mean one, brought there from the centroid by that rotation.
     """
-    points, weights = quadrature(_ORDER)
-    values, reference = shape_values(points), shape_gradients(points)
+    order = mesh.order
+    points, weights = quadrature(QUADRATURE[order][1])
+    values, reference = shape_values(points, order), shape_gradients(points, order)
     result = np.zeros((len(mesh.points), 3, packing.count, 3))
     for particle in range(packing.count):
         nodes = mesh.nodes[mesh.material == particle]
         corners = mesh.points[nodes]
-        volumes = np.linalg.det(jacobians(corners, reference)) * weights
+        volumes = np.abs(np.linalg.det(jacobians(corners, reference))) * weights
         where = np.einsum("qa,eai->eqi", values, corners)
         total = volumes.sum()
         middle = np.einsum("eq,eqi->i", volumes, where) / total

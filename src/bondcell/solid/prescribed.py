@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
+from bondcell.fem.blocks import product
 from bondcell.fem.krylov import TOLERANCE, conjugate_gradients
 from bondcell.solid.multigrid import PMultigrid
 from bondcell.solid.stiffness import Elastic, assemble
@@ -58,8 +60,10 @@ def solve_prescribed(
     solver = PMultigrid(part, stiffness, held[nodes], many=True)
     start = np.where(held[nodes][..., np.newaxis], values[nodes], 0.0)
     field = start.reshape(-1, values.shape[2])
-    right = -(stiffness.fine @ field) * solver.free[:, np.newaxis]
-    step, iterations = conjugate_gradients(lambda x: solver.matrix @ x, solver, right, tolerance)
+    right = -product(stiffness.fine, field) * solver.free[:, np.newaxis]
+    step, iterations = conjugate_gradients(
+        partial(product, solver.matrix), solver, right, tolerance
+    )
     field += step
-    energy = field.T @ (stiffness.fine @ field)
+    energy = field.T @ product(stiffness.fine, field)
     return Prescribed(energy, int(solver.free.sum()), iterations)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
-from bondcell.fem.blocks import IndexArray
+from bondcell.fem.blocks import IndexArray, product
 from bondcell.fem.krylov import TOLERANCE, conjugate_gradients
 from bondcell.lattice.packing import Packing
 from bondcell.solid.multigrid import PMultigrid
@@ -121,10 +122,10 @@ def condense(
     for start in range(0, motions.shape[1], CASES_AT_ONCE):
         cases = slice(start, start + CASES_AT_ONCE)
         answer[:, cases], iterations = conjugate_gradients(
-            lambda x: solver.matrix @ x, solver, -pulls[:, cases] * free, tolerance
+            partial(product, solver.matrix), solver, -pulls[:, cases] * free, tolerance
         )
         most = max(most, iterations)
-    rest = pulls + stiffness.fine @ answer
+    rest = pulls + product(stiffness.fine, answer)
     answer += motions
     result = answer.T @ rest
     dof = int(solver.free.sum())

@@ -11,23 +11,22 @@ from scipy.sparse import bsr_array
 from bondcell.cell import FloatArray
 from bondcell.fem.blocks import BlockAssembler, IndexArray
 from bondcell.solid.elements import (
-    EMBEDDING,
+    QUADRATURE,
     element_matrices,
+    lattice_of,
+    order_of,
     physical_gradients,
     quadrature,
     shape_gradients,
 )
 from bondcell.solid.tets import MATRIX, Tets
 
-CHUNK = 2000
-"""Elements whose matrices are held at once: small enough for the processor's cache."""
-
-CURVED_ORDER, STRAIGHT_ORDER = 5, 2
-"""Orders of quadrature; order 2 is exact on straight elements."""
+CHUNK = 1_800_000
+"""Entries of the element matrices held at once: small enough for the processor's cache."""
 
 
 LocalMatrices = Callable[[IndexArray, FloatArray, FloatArray], FloatArray]
-"""Positions of elements, gradients and weights -> element matrices (elements, 30, 30)."""
+"""Positions of elements, gradients and weights -> element matrices, node by node."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +58,7 @@ class Elastic:
 
 @dataclass(frozen=True)
 class Stiffness:
-    """Stiffness of second-order tetrahedra and of the first-order ones in them.
+    """Stiffness of tetrahedra and of the first-order ones in them.
 
     Parameters
     ----------
@@ -120,22 +119,24 @@ def assemble_local(mesh: Tets, elements: IndexArray, local: LocalMatrices) -> St
 def chunks(mesh: Tets, elements: IndexArray) -> Iterator[tuple[IndexArray, FloatArray, FloatArray]]:
     """Some elements at a time: where they are in ``elements``, gradients and weights there.
 
-    Gradients have the shape (chunk, points, 10, 3), weights (chunk, points).
+    Gradients have the shape (chunk, points, nodes, 3), weights (chunk, points).
     """
+    order = mesh.order
+    size = max(1, CHUNK // (3 * mesh.nodes.shape[1]) ** 2)
     curved = mesh.is_curved[elements]
-    for group, order in (
-        (np.flatnonzero(curved), CURVED_ORDER),
-        (np.flatnonzero(~curved), STRAIGHT_ORDER),
-    ):
-        points, weights = quadrature(order)
-        reference = shape_gradients(points)
-        for start in range(0, group.size, CHUNK):
-            own = group[start : start + CHUNK]
+    straight_rule, curved_rule = QUADRATURE[order]
+    for group, rule in ((curved, curved_rule), (~curved, straight_rule)):
+        every = np.flatnonzero(group)
+        points, weights = quadrature(rule)
+        reference = shape_gradients(points, order)
+        for start in range(0, every.size, size):
+            own = every[start : start + size]
             corners = mesh.points[mesh.nodes[elements[own]]]
             yield own, *physical_gradients(corners, reference, weights)
 
 
 def coarsened(local: FloatArray) -> FloatArray:
-    """Element matrices on the four corners, shape (elements, 12, 12), of those on ten nodes."""
-    wide = np.kron(EMBEDDING, np.eye(3))
+    """Element matrices on the four corners, shape (elements, 12, 12), of those on all nodes."""
+    order = order_of(local.shape[1] // 3)
+    wide = np.kron(lattice_of(order) / order, np.eye(3))
     return np.asarray(wide.T @ local @ wide)

@@ -1,4 +1,4 @@
-"""Second-order tetrahedra that follow spheres."""
+"""Curved tetrahedra that follow spheres."""
 
 from __future__ import annotations
 
@@ -7,20 +7,26 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from bondcell.cell import FloatArray
 from bondcell.errors import BondcellError
 from bondcell.fem.blocks import IndexArray
 from bondcell.lattice.packing import Packing
-from bondcell.solid.elements import GRADIENTS_AT_NODES, jacobians
-
-EDGES = np.array([[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]])
-"""Corners of the six edges of a tetrahedron; its mid-nodes are in this order."""
+from bondcell.solid.elements import (
+    EDGES,
+    FACES,
+    jacobians,
+    order_of,
+    reference_nodes,
+    shape_gradients,
+)
 
 MATRIX = -1
 """Material of the elements that are in no particle; others carry the particle's number."""
 
 _ON_SPHERE = 1e-6
+_STRAIGHT = 1e-13
 
 SMALLEST_JACOBIAN = 1e-3
 """Least Jacobian determinant of a curved tetrahedron at a node, over the straight one's."""
@@ -28,33 +34,40 @@ SMALLEST_JACOBIAN = 1e-3
 
 @dataclass(frozen=True)
 class Tets:
-    """Second-order tetrahedra: corners first, then mid-nodes of edges.
+    """Tetrahedra of one order; the corners of all are the first nodes.
 
     Parameters
     ----------
     points
         Nodes [m], shape (nodes, 3).
     nodes
-        Corners and mid-nodes of each element, shape (elements, 10).
+        Nodes of each element as in `bondcell.solid.elements.lattice_of`, shape (elements, nodes of
+        an element).
     material
         `MATRIX` or number of the particle, shape (elements,).
     corners
         How many of the nodes are corners.
-    ends
-        Corners of each edge, shape (nodes - corners, 2).
+    linear
+        Values of the first-order functions at all other nodes, shape (nodes - corners, corners).
     """
 
     points: FloatArray
     nodes: IndexArray
     material: IndexArray
     corners: int
-    ends: IndexArray
+    linear: csr_array
+
+    @property
+    def order(self) -> int:
+        """Order of the functions that carry both the shape and the displacements."""
+        return order_of(self.nodes.shape[1])
 
     @cached_property
     def is_curved(self) -> NDArray[np.bool_]:
-        """Elements with an edge that is not straight, shape (elements,)."""
-        middle = self.points[self.ends].mean(axis=1)
-        bent = (self.points[self.corners :] != middle).any(axis=1)
+        """Elements whose nodes are not where they were on straight edges, shape (elements,)."""
+        straight = self.linear @ self.points[: self.corners]
+        size = float(np.ptp(self.points, axis=0).max())
+        bent = (np.abs(self.points[self.corners :] - straight) > _STRAIGHT * size).any(axis=1)
         return np.asarray(bent[self.nodes[:, 4:] - self.corners].any(axis=1))
 
     def nodes_of(self, material: int) -> IndexArray:
@@ -67,9 +80,9 @@ class Tets:
         number = np.full(len(self.points), -1)
         number[used] = np.arange(used.size)
         corners = int(np.searchsorted(used, self.corners))
-        ends = number[self.ends[used[corners:] - self.corners]]
+        linear = csr_array(self.linear[used[corners:] - self.corners][:, used[:corners]])
         nodes = number[self.nodes[chosen]]
-        return Tets(self.points[used], nodes, self.material[chosen], corners, ends), used
+        return Tets(self.points[used], nodes, self.material[chosen], corners, linear), used
 
     def on_plane(self, axis: int, position: float) -> NDArray[np.bool_]:
         """Nodes on a plane across an axis, shape (nodes,)."""
@@ -98,13 +111,24 @@ def second_order(
     """
     material = _without_dents(points, corners, material, packing)
     mesh = _curved(points, corners, material, packing)
+    check_orientation(mesh)
+    return mesh
+
+
+def check_orientation(mesh: Tets) -> None:
+    """Refuse elements that their curved sides turn inside out.
+
+    Raises
+    ------
+    BondcellError
+        At a node of an element the Jacobian is below `SMALLEST_JACOBIAN` of the straight one's.
+    """
     worst = float(_orientation(mesh).min())
     if worst <= SMALLEST_JACOBIAN:
         raise BondcellError(
             "a tetrahedron is turned inside out by the curvature of a sphere (smallest relative "
             f"Jacobian {worst:.2g}): reduce the size"
         )
-    return mesh
 
 
 def _without_dents(
@@ -140,7 +164,10 @@ def _curved(
         arm = middle[own] - centre
         middle[own] = centre + radius * arm / np.linalg.norm(arm, axis=1, keepdims=True)
     nodes = np.concatenate([corners, len(points) + number.reshape(-1, 6)], axis=1)
-    return Tets(np.concatenate([points, middle]), nodes, material, len(points), ends)
+    halves = np.full(ends.size, 0.5)
+    starts = np.arange(0, ends.size + 1, 2)
+    linear = csr_array((halves, ends.ravel(), starts), shape=(len(ends), len(points)))
+    return Tets(np.concatenate([points, middle]), nodes, material, len(points), linear)
 
 
 def _volumes(points: FloatArray, corners: IndexArray) -> FloatArray:
@@ -152,9 +179,8 @@ def _surface_edges(
     corners: IndexArray, material: IndexArray, edges: IndexArray, count: int
 ) -> IndexArray:
     """Edges (and their particle) of the faces between a particle and the matrix."""
-    faces = np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 3]])
     face_edges = np.array([[0, 1, 2], [0, 4, 3], [2, 5, 3], [1, 5, 4]])
-    all_faces = np.sort(corners[:, faces], axis=2).reshape(-1, 3)
+    all_faces = np.sort(corners[:, FACES], axis=2).reshape(-1, 3)
     key = (all_faces[:, 0] * count + all_faces[:, 1]) * count + all_faces[:, 2]
     if count**3 > 2**62:
         key = np.unique(all_faces, axis=0, return_inverse=True)[1].ravel()
@@ -173,8 +199,9 @@ def _surface_edges(
 def _orientation(mesh: Tets) -> FloatArray:
     """Smallest Jacobian determinant at a node over the straight one's, shape (elements,)."""
     straight = 6 * _volumes(mesh.points, mesh.nodes[:, :4])
-    result = np.where(straight > 0, 1.0, -1.0)
-    curved = np.flatnonzero(mesh.is_curved)
-    determinant = np.linalg.det(jacobians(mesh.points[mesh.nodes[curved]], GRADIENTS_AT_NODES))
+    result = np.where(straight != 0, 1.0, -1.0)
+    curved = np.flatnonzero(mesh.is_curved & (straight != 0))
+    gradients = shape_gradients(reference_nodes(mesh.order), mesh.order)
+    determinant = np.linalg.det(jacobians(mesh.points[mesh.nodes[curved]], gradients))
     result[curved] = (determinant / straight[curved, np.newaxis]).min(axis=1)
     return result

@@ -12,10 +12,10 @@ from bondcell.fem.blocks import IndexArray
 from bondcell.lattice import specimen_geometry as given
 from bondcell.lattice.bonds import bonds
 from bondcell.lattice.lattice import Lattice, lattice
-from bondcell.lattice.pockets import pockets, triangles
 from bondcell.lattice.solve import Solution, solve
 from bondcell.lattice.specimen_geometry import specimen_packing
 from bondcell.specimen.bonds import Material, bond_springs, wall_spring
+from bondcell.specimen.full_lattice import LayerEnergies, full_springs
 
 VARIANTS: Mapping[str, tuple[str, tuple[str, ...]]] = {
     "lattice_paper": ("paper", ("normal",)),
@@ -63,7 +63,7 @@ def specimen_lattice(
     variant: str,
     material: Material,
     walls: str,
-    triangle: tuple[float, float] | None = None,
+    layer: LayerEnergies | None = None,
     springs_of: Springs = bond_springs,
 ) -> SpecimenLattice:
     """Build one of `VARIANTS`.
@@ -76,9 +76,8 @@ def specimen_lattice(
         The elastic constants; ``lattice_paper`` has its own stiffnesses.
     walls
         Sides of the box: ``free`` or ``fixed``.
-    triangle
-        ``2 U`` of a triangle of neighbours under dilation and deviator [J], see
-        `bondcell.solid.pocket.TriangleEnergies`; for ``lattice_full``.
+    layer
+        Energies of the cells of its layer of spheres; for ``lattice_full``.
     springs_of
         Gives the springs of a bond; another one may remember what it gave.
 
@@ -98,10 +97,9 @@ def specimen_lattice(
     own = bonds(pairs, **{name: springs[name] for name in used})
     three = None
     if variant == "lattice_full":
-        if triangle is None:
-            raise ValueError("lattice_full needs the energies of a triangle")
-        area, deviator = pocket_springs(triangle, springs)
-        three = pockets(triangles(pairs, packed.count), area, deviator)
+        if layer is None:
+            raise ValueError("lattice_full needs the energies of its layer's cells")
+        own, three = full_springs(own, points, springs, layer)
     bare = lattice(points, own, three)
     ground = np.zeros((bare.count, bare.width))
     if walls == "fixed":
@@ -110,22 +108,6 @@ def specimen_lattice(
             distance = given.BOX[0][1] - abs(points[node, 0])
             ground[node, :2] = wall_spring(material.young_matrix, distance) * np.array([1, shear])
     return SpecimenLattice(lattice(points, own, three, ground), bottom)
-
-
-def pocket_springs(
-    triangle: tuple[float, float], springs: Mapping[str, float]
-) -> tuple[float, float]:
-    """K_tri and K_dev [J]: what the bonds do not explain of a triangle's energies.
-
-    Notes
-    -----
-    Half of each side's bond belongs to a triangle: ``2 U = 3/2 K_n L^2 + 4 K_tri`` under the strain
-    (1, 1), ``2 U = 3/4 (K_n + K_s) L^2 + 4 K_dev`` under (1, -1).
-    """
-    square = (2 * given.RADIUS + given.GAP) ** 2
-    normal, shear = springs["normal"], springs["shear"]
-    area = (triangle[0] - 1.5 * normal * square) / 4
-    return area, (triangle[1] - 0.75 * (normal + shear) * square) / 4
 
 
 def _paper(points: FloatArray, pairs: IndexArray, bottom: IndexArray) -> SpecimenLattice:

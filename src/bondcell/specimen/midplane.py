@@ -7,7 +7,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from bondcell.cell import FloatArray
-from bondcell.solid.elements import GRADIENTS_AT_NODES, physical_gradients
+from bondcell.solid.elements import physical_gradients, reference_nodes, shape_gradients
 from bondcell.specimen.bonds import Material
 
 # Corners of each side of a tetrahedron, then the middles of its edges.
@@ -98,7 +98,7 @@ def _stress(
     corners: FloatArray, shift: FloatArray, own: NDArray[np.int64], material: Material
 ) -> FloatArray:
     """Stresses at the nodes of elements [Pa], shape (elements, 10, 3, 3)."""
-    slopes, _ = physical_gradients(corners, GRADIENTS_AT_NODES, np.ones(10))
+    slopes, _ = physical_gradients(corners, shape_gradients(reference_nodes(2)), np.ones(10))
     gradient = np.einsum("eqai,eaj->eqji", slopes, shift)
     strain = (gradient + gradient.transpose(0, 1, 3, 2)) / 2
     inside = own >= 0

@@ -15,6 +15,7 @@ from bondcell.errors import InputError, Violation
 from bondcell.lattice import specimen_geometry as given
 from bondcell.models import MODELS
 from bondcell.specimen.bonds import Material
+from bondcell.specimen.full_lattice import LayerEnergies, layer_energies
 from bondcell.specimen.lattice_variants import VARIANTS, specimen_lattice
 from bondcell.specimen.names import LOADINGS, METHODS, SOLIDS, WALLS
 from bondcell.status import Status, cf_flag_attributes
@@ -24,8 +25,8 @@ Watch = Callable[[str, str, Any, Any], None]
 MODES = ("normal", "shear", "bending", "torsion", "pocket", "ground")
 """Parts of a lattice's energy."""
 
-POCKET_SIZES = (0.5, 0.33)
-"""Element sizes, relative to the gap, of the cell that gives the pockets."""
+CELL_SIZES = (1.0, 2.0)
+"""Element sizes, relative to the gap, of the layer's cells; the second one gives an estimate."""
 
 _DIMS = ("method", "loading", "walls")
 _CHOICES = {"methods": METHODS, "loadings": tuple(LOADINGS), "walls": WALLS}
@@ -100,14 +101,16 @@ def specimen(
     if solids:
         _add_solids(data, solids, ways, material, watch)
     started = perf_counter()
-    triangles = _triangle_ladder(material) if "lattice_full" in methods else []
+    layers = []
+    if "lattice_full" in methods:
+        layers = [layer_energies(material, size) for size in CELL_SIZES]
     cell_seconds = perf_counter() - started
     for method in methods:
         if method in VARIANTS and VARIANTS[method][0] in (*MODELS, "paper"):
             for wall in walls:
-                _add_lattice(data, method, wall, ways, material, triangles, watch)
-    if triangles:
-        # Its pockets come from a cell of their own, solved once for all walls.
+                _add_lattice(data, method, wall, ways, material, layers, watch)
+    if layers:
+        # Its pockets and borders come from cells of their own, solved once for all walls.
         data.seconds.loc[{"method": "lattice_full"}] += cell_seconds
     data["displacement_norm"] = np.sqrt(
         (data.displacement**2).sum(("particle", "component"), skipna=False)
@@ -202,34 +205,20 @@ def _add_solids(
         data.error_estimate.loc[{"method": method}] = error
 
 
-def _triangle_ladder(material: Material) -> list[tuple[float, float]]:
-    """Energies of a triangle of neighbours on two meshes, the finer one first."""
-    from bondcell.solid.pocket import triangle_energies
-    from bondcell.solid.stiffness import Elastic
-
-    matrix = Elastic(material.young_matrix, material.poisson_matrix)
-    depth = given.BOX[2][1] - given.BOX[2][0]
-    found = [
-        triangle_energies(given.RADIUS, given.GAP, depth, matrix, size)
-        for size in reversed(POCKET_SIZES)
-    ]
-    return [(one.dilation, one.deviator) for one in found]
-
-
 def _add_lattice(
     data: xr.Dataset,
     method: str,
     wall: str,
     ways: FloatArray,
     material: Material,
-    triangles: list[tuple[float, float]],
+    layers: list[LayerEnergies],
     watch: Watch | None,
 ) -> None:
     """One lattice under all loadings."""
     started = perf_counter()
     every = [
-        specimen_lattice(method, material, wall, triangle)
-        for triangle in (triangles if method == "lattice_full" else [None])
+        specimen_lattice(method, material, wall, layer)
+        for layer in (layers if method == "lattice_full" else [None])
     ]
     answers = [[own.solve(way) for way in ways] for own in every]
     seconds = perf_counter() - started

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from bondcell.cell import FloatArray
 from bondcell.lattice.lattice import Lattice
@@ -109,7 +110,7 @@ def write_field(path: str | Path, field: xr.Dataset, loading: str) -> None:
         field["element"].values.astype(np.int64),
         field["particle"].values.astype(np.int64),
         0,
-        np.empty((0, 2), dtype=np.int64),
+        csr_array((0, 0)),
     )
     write_solid(path, mesh, field["displacement"].sel(loading=loading).values)
 
