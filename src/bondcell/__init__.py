@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from bondcell.advice import Advice, advise
     from bondcell.bond_tables import reduce_series, write_bond_table
+    from bondcell.bonded_lattice import bonded_lattice
     from bondcell.errors import (
         BondcellError,
         DataError,
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
         Violation,
     )
     from bondcell.evaluate import evaluate
+    from bondcell.lattice.solve import solve as solve_lattice
     from bondcell.models import MODELS
     from bondcell.prony.prony import Prony, PronyError
     from bondcell.prony_files import read_prony
@@ -55,12 +57,14 @@ __all__ = [
     "Violation",
     "__version__",
     "advise",
+    "bonded_lattice",
     "dynamic_stiffness",
     "evaluate",
     "read_prony",
     "reduce_series",
     "relaxation",
     "relaxation_series",
+    "solve_lattice",
     "write_bond_table",
 ]
 
@@ -79,6 +83,7 @@ _HOME = {
     "UnsupportedLoad": "bondcell.errors",
     "Violation": "bondcell.errors",
     "advise": "bondcell.advice",
+    "bonded_lattice": "bondcell.bonded_lattice",
     "dynamic_stiffness": "bondcell.relaxation",
     "evaluate": "bondcell.evaluate",
     "read_prony": "bondcell.prony_files",
@@ -87,6 +92,8 @@ _HOME = {
     "relaxation_series": "bondcell.relaxation",
     "write_bond_table": "bondcell.bond_tables",
 }
+
+_OTHER_NAMES = {"solve_lattice": ("bondcell.lattice.solve", "solve")}
 
 
 class _Package(ModuleType):
@@ -105,6 +112,9 @@ def __getattr__(name: str) -> Any:
         value: Any = _version()
     elif name in _HOME:
         value = getattr(import_module(_HOME[name]), name)
+    elif name in _OTHER_NAMES:
+        home, own_name = _OTHER_NAMES[name]
+        value = getattr(import_module(home), own_name)
     else:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     globals()[name] = value

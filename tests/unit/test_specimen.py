@@ -11,7 +11,7 @@ from bondcell.specimen.compare import compare
 from bondcell.specimen.full_lattice import FARTHEST, borders
 from bondcell.specimen.lattice_variants import specimen_lattice
 from bondcell.specimen.paper import printed_stiffness
-from bondcell.specimen.solid_half import extrapolate
+from bondcell.specimen.solid_half import extrapolate, extrapolate_orders
 from bondcell.specimen.specimen import specimen
 from bondcell.status import Status
 
@@ -122,10 +122,20 @@ def test_softest_eliminates_what_gives_way():
 def test_extrapolation_finds_order_and_limit():
     sizes = [1.0, 0.5, 0.33]
     values = np.array([[1 + 0.1 * h**3, 2 + 0.4 * h**1.5] for h in sizes])
-    limit, error = extrapolate(sizes, values)
+    limit, doubt = extrapolate(sizes, values)
     np.testing.assert_allclose(limit, [1, 2], rtol=1e-9)
-    assert (error >= values[-1] / limit - 1).all()
+    assert ((doubt > 0) & (doubt < 0.1)).all()
     assert np.isnan(extrapolate([1.0], values[:1])[1]).all()
+
+
+def test_extrapolation_over_orders():
+    values = np.array([[1 + 0.2**p, 2 + 3 * 0.5**p] for p in (2, 3, 4)])
+    limit, doubt = extrapolate_orders(values)
+    np.testing.assert_allclose(limit, [1, 2], rtol=1e-12)
+    np.testing.assert_allclose(doubt, values[-1] / [1, 2] - 1)
+    two, _ = extrapolate_orders(values[:2])
+    assert (two < values[1]).all()
+    assert np.isnan(extrapolate_orders(values[:1])[1]).all()
 
 
 def test_bad_names_and_sizes_are_all_named():

@@ -9,7 +9,7 @@ from bondcell.fem import reduced_basis, reference, structured, sweep  # noqa: F4
 from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.job import job
 from bondcell.scenes.planned_scene import planned_scene
-from bondcell.solid import finite_strain, moduli, pocket  # noqa: F401
+from bondcell.solid import finite_strain, layer_cells, moduli  # noqa: F401
 from bondcell.specimen import finite_strain as specimen_finite_strain  # noqa: F401
 from bondcell.specimen import relaxation as specimen_relaxation  # noqa: F401
 from bondcell.specimen import solid_half as specimen_solid  # noqa: F401

@@ -49,13 +49,16 @@ def draw_time(results: Results) -> Drawing:
 
 def _panel(axes: Axes, table: pd.DataFrame) -> dict[str, Any]:
     found = {}
-    for method, rows in table.groupby("method", sort=False):
-        (found[NAMES[str(method)]],) = axes.plot(
+    for (method, order), rows in table.groupby(["method", "order"], sort=False, dropna=False):
+        name, style = NAMES[str(method)], METHODS[str(method)]
+        if order > 2:
+            name, style = f"{name}, order {order:g}", style | {"markerfacecolor": "white"}
+        (found[name],) = axes.plot(
             rows["seconds"],
             np.maximum(rows["energy_error"].abs(), 1e-5),
             linestyle="-" if len(rows) > 1 else "none",
-            markersize=6,
-            **METHODS[str(method)],
+            markersize=6 if order <= 2 or np.isnan(order) else 5 + order,
+            **style,
         )
     axes.set(xscale="log", yscale="log", xlabel="time")
     lowest = max(1e-4, 0.5 * float(table["energy_error"].abs().min()))
@@ -70,7 +73,7 @@ def _panel(axes: Axes, table: pd.DataFrame) -> dict[str, Any]:
 def _description(table: pd.DataFrame) -> str:
     words = [
         f"{row.loading}, {NAMES[row.method]}"
-        + ("" if np.isnan(row.per_gap) else f" at {row.per_gap:g} of the gap")
+        + ("" if np.isnan(row.per_gap) else f" at {row.per_gap:g} of the gap, order {row.order:g}")
         + f": {percent(row.energy_error, sign=True)} in {quantity(row.seconds, 's', 2)}"
         for row in table.itertuples()
     ]

@@ -33,6 +33,7 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Table]:
     header = [
         "method",
         "h / gap",
+        "order",
         "unknowns",
         "time",
         "energy",
@@ -48,13 +49,14 @@ def _errors(study: xr.Dataset, table: pd.DataFrame) -> Iterator[Table]:
             sure = f", sure to {percent(doubt)}" if np.isfinite(doubt) else ", from one mesh alone"
             caption += (
                 f" Errors of the energy are to {_millijoule(best)}, the limit of the solid's "
-                f"meshes{sure}; those of displacement and rotation to its finest mesh. Time: "
+                f"meshes{sure}; those of displacement and rotation to its best one. Time: "
                 "with the finite elements of bonds and pockets, without the solid's mesh."
             )
         lines = [
             [
                 NAMES[row.method],
                 number(row.per_gap, 2),
+                number(row.order),
                 str(row.dof),
                 quantity(row.seconds, "s", 2),
                 _millijoule(row.energy),

@@ -216,14 +216,16 @@ def _solid(table: pd.DataFrame, study: xr.Dataset) -> Iterator[Finding]:
         rows = _of(table, method, walls)
         if rows.empty:
             continue
-        finest = rows[rows["per_gap"] == rows["per_gap"].min()]
+        best = rows.groupby(["per_gap", "order"])["energy"].sum().idxmin()
+        finest = rows[(rows["per_gap"] == best[0]) & (rows["order"] == best[1])]
         yield Finding(
-            f"The {NAMES[method]}, elements {finest['per_gap'].iloc[0]:g} times the gap: "
+            f"The {NAMES[method]}, elements {best[0]:g} times the gap, displacements of order "
+            f"{best[1]:g}: "
             f"{finest['dof'].iloc[0]} unknowns, {quantity(finest['seconds'].iloc[0], 's', 2)}, its "
             f"energy {_span(finest['energy_error'], finest['loading'])} beside the limit that the "
             "ladder gives."
         )
-    both = [_of(table, name, walls).set_index(["loading", "per_gap"]) for name in SOLIDS]
+    both = [_of(table, name, walls).set_index(["loading", "per_gap", "order"]) for name in SOLIDS]
     if not (both[0].empty or both[1].empty):
         ratio = (both[0]["energy"] / both[1]["energy"] - 1).dropna()
         if not ratio.empty:

@@ -55,8 +55,14 @@ Size = Annotated[float, number_between(*SIZES)]
 Ladder = Annotated[tuple[Size, ...], AfterValidator(_falling)]
 
 
+Order = Annotated[int, whole_number_between(3, 4)]
+
+
 class Ladders(Block):
-    """Meshes of the solid: element sizes relative to the gap, falling, for each kind of walls."""
+    """Meshes of the solid: element sizes relative to the gap, falling, for each kind of walls.
+
+    All are solved with second-order displacements, the coarsest one with `orders` besides.
+    """
 
     free: Ladder | None = Field(
         None, description=f"Sizes with free sides, {list(SIZES)}, decreasing; left out: not solved."
@@ -64,14 +70,19 @@ class Ladders(Block):
     fixed: Ladder | None = Field(
         None, description="Sizes with fixed sides, likewise; left out: not solved."
     )
+    orders: Annotated[tuple[Order, ...], AfterValidator(distinct)] = Field(
+        (),
+        description="Higher orders of the displacements, on the coarsest mesh besides.",
+        json_schema_extra={"uniqueItems": True},
+    )
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        if not self.given():
+        if not self.sizes():
             raise NotAllowed("sizes for free or fixed walls")
         return self
 
-    def given(self) -> dict[str, tuple[float, ...]]:
+    def sizes(self) -> dict[str, tuple[float, ...]]:
         """Walls -> sizes, of those that are to be solved."""
         both = {"free": self.free, "fixed": self.fixed}
         return {name: sizes for name, sizes in both.items() if sizes}

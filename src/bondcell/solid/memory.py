@@ -6,13 +6,13 @@ import os
 
 from bondcell.errors import InputError, Violation
 
-BYTES_PER_ELEMENT = 9_500
-"""Peak of mesh, matrices, multigrid and vectors; measured, see the benchmark of the specimen."""
+BYTES_PER_ELEMENT = {2: 14_000, 3: 60_000, 4: 150_000}
+"""Peak of mesh, matrices, multigrid and vectors, by order; measured by the specimen's benchmark."""
 
 
-def predicted_memory(elements: int) -> int:
-    """Peak memory of an elastic solution with so many second-order tetrahedra [bytes]."""
-    return BYTES_PER_ELEMENT * elements
+def predicted_memory(elements: int, order: int = 2) -> int:
+    """Peak memory of an elastic solution with so many tetrahedra [bytes]."""
+    return BYTES_PER_ELEMENT[order] * elements
 
 
 def free_memory() -> float:
@@ -23,7 +23,7 @@ def free_memory() -> float:
         return float("inf")
 
 
-def check_memory(elements: int, limit: float | None = None) -> None:
+def check_memory(elements: int, limit: float | None = None, order: int = 2) -> None:
     """Refuse a mesh that would not fit.
 
     Raises
@@ -35,7 +35,7 @@ def check_memory(elements: int, limit: float | None = None) -> None:
     --------
     >>> check_memory(1000, limit=1e9)
     """
-    needed = predicted_memory(elements)
+    needed = predicted_memory(elements, order)
     allowed = free_memory() if limit is None else limit
     if needed > allowed:
         raise InputError(

@@ -43,11 +43,8 @@ class PMultigrid:
     ) -> None:
         self.free = (~held).astype(np.float64).ravel()
         # Rows of numbers are quicker than blocks.
-        rows = _free_rows(stiffness.fine, self.free)
-        self.matrix = rows if many else stiffness.fine
-        self._rows = csr_array(
-            (rows.data.astype(np.float32), rows.indices, rows.indptr), rows.shape
-        )
+        self.matrix = _free_rows(stiffness.fine, self.free) if many else stiffness.fine
+        self._rows = _free_rows(stiffness.fine, self.free.astype(np.float32))
         self._smoother = Chebyshev(stiffness.fine, self.free, self._rows, DEGREES[mesh.order])
         self._corners = mesh.corners
         self._average, self._back = mesh.linear, csr_array(mesh.linear.T)
@@ -84,9 +81,13 @@ class PMultigrid:
 
 
 def _free_rows(matrix: bsr_array, free: FloatArray) -> csr_array:
-    """The matrix by rows, with zero rows and columns where unknowns are held."""
-    result = csr_array(matrix)
-    rows = np.repeat(np.arange(free.size), np.diff(result.indptr))
-    result.data *= free[rows] * free[result.indices]
+    """The matrix by rows, with zero rows and columns where unknowns are held.
+
+    Its precision is that of ``free``.
+    """
+    blocks = matrix.data.astype(free.dtype, copy=False)
+    result = csr_array(bsr_array((blocks, matrix.indices, matrix.indptr), shape=matrix.shape))
+    result.data *= np.repeat(free, np.diff(result.indptr))
+    result.data *= free[result.indices]
     result.eliminate_zeros()
     return result

@@ -54,6 +54,28 @@ def raise_order(mesh: Tets, order: int, packing: Packing) -> Tets:
     return raised
 
 
+def second_order_part(mesh: Tets, field: FloatArray) -> tuple[Tets, FloatArray]:
+    """The second-order tetrahedra at whose nodes a field of any order is looked at.
+
+    Parameters
+    ----------
+    mesh
+        Tetrahedra of any order.
+    field
+        Values at their nodes, shape (nodes, ...).
+    """
+    if mesh.order == 2:
+        return mesh, field
+    values = shape_values(reference_nodes(2), mesh.order)
+    nodes = _numbered(mesh.nodes[:, :4], mesh.corners, 2)
+    points = np.empty((int(nodes.max()) + 1, 3))
+    points[nodes] = values @ mesh.points[mesh.nodes]
+    result = np.empty((len(points), *field.shape[1:]))
+    result[nodes] = np.einsum("an,en...->ea...", values, field[mesh.nodes])
+    linear = _linear(nodes, mesh.corners, len(points), 2)
+    return Tets(points, nodes, mesh.material, mesh.corners, linear), result
+
+
 def _sorted_corners(mesh: Tets) -> IndexArray:
     """Nodes of the second-order elements with their corners in rising order."""
     corners = mesh.nodes[:, :4]

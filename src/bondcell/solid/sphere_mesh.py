@@ -25,7 +25,11 @@ _OPTIONS = {"Mesh.OptimizeThreshold": 0.35, "Mesh.Algorithm": 1}
 
 
 def sphere_mesh(
-    packing: Packing, per_gap: float, largest: float = LARGEST_SIZE, memory: float | None = None
+    packing: Packing,
+    per_gap: float,
+    largest: float = LARGEST_SIZE,
+    memory: float | None = None,
+    order: int = 2,
 ) -> Tets:
     """Mesh spheres and the matrix around them.
 
@@ -39,6 +43,8 @@ def sphere_mesh(
         Largest element relative to the smallest radius.
     memory
         What a solution may take [bytes]; default: what the machine has free.
+    order
+        Order of the displacements that the mesh is meant for; its own is two.
 
     Raises
     ------
@@ -59,7 +65,7 @@ def sphere_mesh(
     if violations:
         raise InputError(violations)
     sizes = size_field(packing, per_gap, largest * float(packing.radii.min()))
-    check_memory(sizes.elements, memory)
+    check_memory(sizes.elements, memory, order)
     with gmsh_model("bondcell packing", _OPTIONS) as gmsh, tempfile.TemporaryDirectory() as folder:
         try:
             volumes = _draw(gmsh, packing)

@@ -86,7 +86,7 @@ def _with_reference(data: xr.Dataset) -> xr.Dataset:
     data["reference_error"] = (dims, error, _REFERENCE["reference_error"])
     if not from_method:
         return data
-    # Displacements converge faster than the energy: the finest solution serves as it is.
+    # Displacements converge faster than the energy: the lowest solution serves as it is.
     solid = data.sel({"method": from_method})
     for name in SOLIDS:
         if name in data["method"].values:
@@ -120,42 +120,39 @@ def best_energy(data: xr.Dataset) -> tuple[FloatArray, FloatArray, str]:
 
     Notes
     -----
-    The finest solution times the ratio of limit to value of a ladder that has this mesh: its own,
+    The lowest solution times the ratio of limit to value of a ladder that has this mesh: its own,
     or that of rigid particles or other walls, whose relative error on one mesh is nearly the same
-    because it arises in the gaps. Of several the one with the smallest estimate is taken. The
-    uncertainty is that of the limit: its change when the order is taken lower by one half.
+    because it arises in the gaps. Of several the surest one is taken, and its uncertainty.
     """
     shape = (data.sizes["loading"], data.sizes["walls"])
     energy, error = np.full(shape, np.nan), np.full(shape, np.nan)
     solved_by = data["method"].values[data["energy"].notnull().any(("loading", "walls")).values]
     solids = [name for name in reversed(SOLIDS) if name in solved_by]
-    sizes = data["per_gap"].values if solids else np.array([])
     for i, loading in enumerate(data["loading"].values):
         here = data.sel(loading=loading)
         for k, walls in enumerate(data["walls"].values):
             for method in solids:
-                levels = here["level_energy"].sel({"method": method, "walls": walls}).values
-                solved = np.flatnonzero(np.isfinite(levels))
-                if not solved.size:
+                levels = here["level_energy"].sel({"method": method, "walls": walls})
+                if levels.isnull().all():
                     continue
-                finest = solved[np.argmin(sizes[solved])]
-                factor, error[i, k] = _correction(here, solids, float(sizes[finest]))
-                energy[i, k] = levels[finest] * factor
+                lowest = levels.isel({str(k): v for k, v in levels.argmin(...).items()})
+                level = {name: float(lowest[name]) for name in ("per_gap", "order")}
+                factor, error[i, k] = _correction(here, solids, level)
+                energy[i, k] = float(lowest) * factor
                 break
     return energy, error, solids[0] if solids else ""
 
 
-def _correction(here: xr.Dataset, solids: list[str], size: float) -> tuple[float, float]:
-    """Limit over value at a size, and the limit's uncertainty, by the surest ladder with it."""
+def _correction(
+    here: xr.Dataset, solids: list[str], level: dict[str, float]
+) -> tuple[float, float]:
+    """Limit over value at a level, and the limit's uncertainty, by the surest ladder with it."""
     best = (1.0, np.nan)
     for method in solids:
         for walls in here["walls"].values:
             row = here.sel({"method": method, "walls": walls})
-            level = float(row["level_energy"].sel(per_gap=size))
-            estimate, limit = float(row["error_estimate"]), float(row["limit_energy"])
-            if not np.isfinite(level * estimate):
-                continue
-            doubt = abs(estimate - abs(float(row["energy"]) / limit - 1))
-            if not best[1] <= doubt:
-                best = (limit / level, doubt)
+            energy = float(row["level_energy"].sel(level))
+            limit, doubt = float(row["limit_energy"]), float(row["limit_error"])
+            if np.isfinite(energy * doubt) and not best[1] <= doubt:
+                best = (limit / energy, doubt)
     return best

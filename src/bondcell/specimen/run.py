@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from bondcell.lattice.solve import Solution
+from bondcell.solid.raise_order import second_order_part
 from bondcell.specimen.bonds import Material
 from bondcell.specimen.bound import softest_lattice
 from bondcell.specimen.finite_strain import specimen_finite_strain
@@ -94,7 +95,7 @@ def _lattices(block: SpecimenBlock, material: Material) -> xr.Dataset:
     # What is imported on the way belongs to no lattice's time.
     specimen(block.lattices[:1], block.loadings, block.walls[:1], material=material)
     data = specimen(block.lattices, block.loadings, block.walls, material=material, watch=watch)
-    data = data.drop_dims("per_gap").drop_vars("limit_energy")
+    data = data.drop_dims(["per_gap", "order"]).drop_vars(["limit_energy", "limit_error"])
     return data.assign_coords(force=list(FORCES)).assign(
         bond_force=(("method", "loading", "walls", "bond", "force"), forces, FORCE),
         bond_nodes=(("bond", "end"), ends, {"units": "1", "long_name": "nodes of the bond"}),
@@ -104,17 +105,18 @@ def _lattices(block: SpecimenBlock, material: Material) -> xr.Dataset:
 
 def _solid(block: SpecimenBlock, material: Material, method: str) -> list[xr.Dataset]:
     """One solid on its ladders of meshes; the field with free walls, if they are solved."""
-    ladders = block.solids()[method].given()
+    asked = block.solids()[method]
+    ladders = asked.sizes()
     least: dict[str, float] = {}
     kept: dict[str, xr.Dataset] = {}
 
     def watch(_: str, walls: str, mesh: Any, answer: Any) -> None:
         least[walls] = answer.softest
         if answer.field is not None:
-            kept[walls] = _field(mesh, answer.field, block.loadings, walls)
+            kept[walls] = _field(*second_order_part(mesh, answer.field), block.loadings, walls)
 
     found = [
-        specimen([method], block.loadings, [walls], sizes, material, watch)
+        specimen([method], block.loadings, [walls], sizes, asked.orders, material, watch)
         for walls, sizes in ladders.items()
     ]
     every = sorted({size for sizes in ladders.values() for size in sizes}, reverse=True)

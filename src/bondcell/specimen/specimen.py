@@ -47,6 +47,7 @@ _ATTRIBUTES = {
     "level_dof": {"units": "1", "long_name": "degrees of freedom of each mesh"},
     "level_seconds": {"units": "s", "long_name": "wall time on each mesh, mesh excluded"},
     "limit_energy": {"units": "J", "long_name": "strain energy extrapolated over the meshes"},
+    "limit_error": {"units": "1", "long_name": "relative uncertainty of that energy"},
 }
 
 
@@ -55,6 +56,7 @@ def specimen(
     loadings: Sequence[str] = tuple(LOADINGS),
     walls: Sequence[str] = WALLS,
     per_gap: Sequence[float] = (1.0, 0.5),
+    orders: Sequence[int] = (),
     material: Material | None = None,
     watch: Watch | None = None,
 ) -> xr.Dataset:
@@ -66,6 +68,8 @@ def specimen(
         Names in `METHODS`, `LOADINGS` and `WALLS`.
     per_gap
         Element sizes of the solid relative to the gap, falling: the ladder of its meshes.
+    orders
+        Orders of the displacements above the second, on the first of those meshes besides.
     material
         Elastic constants; default: the paper's.
     watch
@@ -79,8 +83,9 @@ def specimen(
         (relative numerical error of the energy), ``status``, ``dof``, ``seconds``; with
         ``particle`` (1 to 18) ``rotation``, with ``component`` as well ``displacement``; with
         ``mode`` ``mode_energy`` of the lattices. Of the solids also ``level_energy``,
-        ``level_dof``, ``level_seconds`` on ``per_gap`` and ``limit_energy``. What was not computed
-        is NaN and flagged.
+        ``level_dof``, ``level_seconds`` on ``per_gap`` and ``order``, ``limit_energy`` and
+        ``limit_error``; their answer is that of the level with the lowest energy. What was not
+        computed is NaN and flagged.
 
     Raises
     ------
@@ -95,7 +100,7 @@ def specimen(
     """
     material = material or Material()
     _check({"methods": methods, "loadings": loadings, "walls": walls}, per_gap)
-    data = _empty(methods, loadings, walls, per_gap)
+    data = _empty(methods, loadings, walls, per_gap, (2, *orders))
     ways = given.DISPLACEMENT * np.array([LOADINGS[name] for name in loadings])
     solids = [name for name in methods if name in SOLIDS]
     if solids:
@@ -138,7 +143,11 @@ def _check(chosen: dict[str, Sequence[str]], per_gap: Sequence[float]) -> None:
 
 
 def _empty(
-    methods: Sequence[str], loadings: Sequence[str], walls: Sequence[str], per_gap: Sequence[float]
+    methods: Sequence[str],
+    loadings: Sequence[str],
+    walls: Sequence[str],
+    per_gap: Sequence[float],
+    orders: Sequence[int],
 ) -> xr.Dataset:
     """The data with nothing computed yet."""
     coords: dict[str, Any] = {
@@ -149,13 +158,14 @@ def _empty(
         "component": ["x", "y"],
         "mode": list(MODES),
         "per_gap": ("per_gap", list(per_gap), {"units": "1", "long_name": "element size per gap"}),
+        "order": ("order", list(orders), {"units": "1", "long_name": "order of displacements"}),
     }
     sizes = {name: len(v[1]) if isinstance(v, tuple) else len(v) for name, v in coords.items()}
     more = {
-        "energy": (), "error_estimate": (), "seconds": (), "limit_energy": (),
+        "energy": (), "error_estimate": (), "seconds": (), "limit_energy": (), "limit_error": (),
         "rotation": ("particle",), "displacement": ("particle", "component"),
-        "mode_energy": ("mode",), "level_energy": ("per_gap",), "level_seconds": ("per_gap",),
-        "level_dof": ("per_gap",),
+        "mode_energy": ("mode",), "level_energy": ("per_gap", "order"),
+        "level_seconds": ("per_gap", "order"), "level_dof": ("per_gap", "order"),
     }  # fmt: skip
     data = xr.Dataset(coords=coords)
     for name, dims in more.items():
@@ -174,35 +184,49 @@ def _add_solids(
     material: Material,
     watch: Watch | None,
 ) -> None:
-    from bondcell.specimen.solid_half import (
-        elastic_answer,
-        extrapolate,
-        rigid_answer,
-        specimen_mesh,
-    )
+    from bondcell.specimen.solid_half import elastic_answer, rigid_answer, specimen_mesh
 
     solve = {"fe_rigid": rigid_answer, "fe_elastic": elastic_answer}
-    for size in data.per_gap.values.tolist():
-        mesh = specimen_mesh(size)
+    sizes, orders = data.per_gap.values.tolist(), data.order.values.tolist()
+    for size, order in [*((size, 2) for size in sizes), *((sizes[0], p) for p in orders[1:])]:
+        mesh = specimen_mesh(size, order)
         for method in solids:
             for wall in data.walls.values.tolist():
                 answer = solve[method](mesh, material, wall, ways)
+                at = {"method": method, "walls": wall}
+                lowest = np.fmin(data.energy.sel(at).values.mean(), np.inf)
+                here = {**at, "per_gap": size, "order": order}
+                data.level_energy.loc[here] = answer.energy
+                data.level_dof.loc[here] = answer.dof
+                data.level_seconds.loc[here] = answer.seconds
+                if answer.energy.mean() >= lowest:
+                    continue
                 if watch:
                     watch(method, wall, mesh, answer)
-                at = {"method": method, "walls": wall}
-                data.level_energy.loc[{**at, "per_gap": size}] = answer.energy
-                data.level_dof.loc[{**at, "per_gap": size}] = answer.dof
-                data.level_seconds.loc[{**at, "per_gap": size}] = answer.seconds
                 data.energy.loc[at] = answer.energy
                 data.displacement.loc[at] = answer.motion[..., :2]
                 data.rotation.loc[at] = answer.motion[..., 2]
                 data.dof.loc[at], data.seconds.loc[at] = answer.dof, answer.seconds
                 data.status.loc[at] = Status.ok
     for method in solids:
-        levels = data.level_energy.sel({"method": method}).transpose("per_gap", "loading", "walls")
-        limit, error = extrapolate(data.per_gap.values.tolist(), levels.values)
-        data.limit_energy.loc[{"method": method}] = limit
-        data.error_estimate.loc[{"method": method}] = error
+        _add_limits(data, method)
+
+
+def _add_limits(data: xr.Dataset, method: str) -> None:
+    """Extrapolate over sizes and over orders, and keep what is surer."""
+    from bondcell.specimen.solid_half import extrapolate, extrapolate_orders
+
+    levels = data.level_energy.sel({"method": method})
+    by_size = levels.sel(order=2).transpose("per_gap", "loading", "walls").values
+    by_order = levels.isel(per_gap=0).transpose("order", "loading", "walls").values
+    limit, doubt = extrapolate(data.per_gap.values.tolist(), by_size)
+    other, its_doubt = extrapolate_orders(by_order)
+    surer = its_doubt < np.where(np.isnan(doubt), np.inf, doubt)
+    limit, doubt = np.where(surer, other, limit), np.where(surer, its_doubt, doubt)
+    data.limit_energy.loc[{"method": method}] = limit
+    data.limit_error.loc[{"method": method}] = doubt
+    energy = data.energy.sel({"method": method}).transpose("loading", "walls").values
+    data.error_estimate.loc[{"method": method}] = np.abs(energy / limit - 1) + doubt
 
 
 def _add_lattice(

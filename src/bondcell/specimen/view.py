@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -80,9 +81,9 @@ def error_table(results: Results) -> pd.DataFrame:
     Returns
     -------
     pandas.DataFrame
-        ``loading``, ``walls``, ``method``, ``per_gap`` (of solids), ``dof``, ``seconds``,
-        ``energy`` [J], ``energy_error`` (to the best known energy), ``displacement_error``,
-        ``rotation_error``; what was not computed has no row.
+        ``loading``, ``walls``, ``method``, ``per_gap`` and ``order`` (of solids), ``dof``,
+        ``seconds``, ``energy`` [J], ``energy_error`` (to the best known energy),
+        ``displacement_error``, ``rotation_error``; what was not computed has no row.
     """
     study, ladder = results[""], results.get("ladder", xr.Dataset())
     rows = []
@@ -110,6 +111,7 @@ def _row(one: xr.Dataset, right: float) -> dict[str, float]:
     }
     return {
         "per_gap": np.nan,
+        "order": np.nan,
         "dof": int(one["dof"]),
         "seconds": float(one["seconds"]),
         "energy": float(one["energy"]),
@@ -124,16 +126,17 @@ def _levels(
     levels = ladder.sel({"method": method, **place})
     found = []
     sure = bool(np.isfinite(here["reference_error"]))
-    for size in levels["per_gap"].values:
-        level = levels.sel(per_gap=size)
+    for size, order in product(levels["per_gap"].values, levels["order"].values):
+        level = levels.sel(per_gap=size, order=order)
         energy = float(level["level_energy"])
         if np.isfinite(energy):
-            finest = energy == float(here["energy"].sel({"method": method}))
+            lowest = energy == float(here["energy"].sel({"method": method}))
             row = _row(here.sel({"method": method}), right)
-            if not finest:
+            if not lowest:
                 row |= {"displacement_error": np.nan, "rotation_error": np.nan}
             row |= {
                 "per_gap": float(size),
+                "order": int(order),
                 "dof": int(level["level_dof"]),
                 "seconds": float(level["level_seconds"]),
                 "energy": energy,
