@@ -35,3 +35,4 @@ def test_python(tmp_path, monkeypatch):
     assert np.all(names["curve"].stiffness.diff("time") <= 0)
     assert np.all(names["few"].reduction_error < 1e-3)
     assert (tmp_path / "results" / "bond.csv").is_file()
+    assert names["pushed"].reactions[2, 1] > 0
