@@ -12,6 +12,9 @@ from bondcell.models.film.solve import least_energies
 
 LOADS = ("normal", "shear", "torsion", "bending")
 
+ROUND_OFF = 3e-7
+"""Fields that nearly repeat each other leave that much, well below the model's own 1e-4."""
+
 
 def materials(count: int, seed: int, radius_j: float, largest: float = 7.0) -> Cell:
     """One geometry; particles from softer than the matrix up to rigid, nu_m up to 1/2."""
@@ -45,8 +48,8 @@ def test_together_or_few_at_once(load: str, radius_j: float) -> None:
     loss = together.stiffness[some] / alone - 1
     assert bound.max() > 0  # the basis was used
     assert bound.max() <= TOLERANCE
-    assert np.all(loss <= bound + 1e-7)
-    assert loss.min() > -1e-7
+    assert np.all(loss <= bound + ROUND_OFF)
+    assert loss.min() > -ROUND_OFF
 
 
 def forms(count: int, seed: int) -> FloatArray:

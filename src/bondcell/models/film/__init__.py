@@ -19,7 +19,7 @@ from functools import partial
 from bondcell.cell import Cell
 from bondcell.models.film import loads
 from bondcell.models.film.interpolated import by_families
-from bondcell.models.film.ranges import is_lateral, is_resolved, is_short
+from bondcell.models.film.ranges import is_resolved, is_short
 from bondcell.models.model import Model, Springs
 
 
@@ -65,10 +65,10 @@ FILM = Model(
     "film, dents of the particles, uniform strain.",
     source="Derived for this project, docs/film.md; nothing is calibrated.",
     valid_range="gap/min(R) >= 1e-5, E_i and E_j >= E_m up to rigid, 0 <= nu_m <= 1/2, radii "
-    "within a factor of 10, R_c <= 3 max(R); shear and bending: gap <= 3 R_c and nu_m <= 0.499, "
-    "or rigid particles. An upper bound (normal: between frictionless plates). Measured in random "
-    "samples, gap/R >= 1e-4: normal and torsion 0.1 % above the finite elements, at most 1.2 %; "
-    "shear and bending 0.4 %, at most 5 % (soft particles, wide cylinders).",
+    "within a factor of 10, R_c <= 3 max(R); shear and bending: gap <= 3 R_c. An upper bound "
+    "(normal: between frictionless plates). Measured in random samples, gap/R >= 1e-4: 0.1 % above "
+    "the finite elements in the median, at most 1.5 %; shear and bending of particles less than "
+    "ten times as stiff as a matrix at nu_m = 1/2 up to 5 %.",
     loads={
         "normal": partial(stiffness, law=loads.normal, power=1),
         "shear": partial(stiffness, law=loads.shear, power=1),
@@ -77,5 +77,5 @@ FILM = Model(
         "bending": partial(stiffness, law=loads.bending, power=3, swaps=False),
     },
     is_valid=is_resolved,
-    limits={"shear": is_lateral, "bending": is_lateral},
+    limits={"shear": is_short, "bending": is_short},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeVar
@@ -67,18 +67,24 @@ def sum_of_grams(strain: FloatArray) -> FloatArray:
 
 
 def placed(
-    blocks: list[FloatArray], first: int, mirrored: bool, count: int
+    blocks: Sequence[FloatArray], places: Sequence[NDArray[np.int64]], count: int
 ) -> tuple[NDArray[np.bool_], tuple[FloatArray, FloatArray]]:
-    """Put the particles' energies where their continuations are among the trial fields."""
+    """Put the two particles' energies where their continuations are among the trial fields."""
     moved, spread = np.zeros((2, count), dtype=bool), []
-    for own, block in enumerate(blocks):
-        start = first + (0 if mirrored else own * block.shape[-1])
-        mine = slice(start, start + block.shape[-1])
+    for own, (block, mine) in enumerate(zip(blocks, places, strict=True)):
         moved[own, mine] = True
         whole = np.zeros((block.shape[0], count, count))
-        whole[:, mine, mine] = block
+        whole[:, mine[:, None], mine] = block
         spread.append(whole)
     return moved, (spread[0], spread[1])
+
+
+def in_a_row(
+    blocks: Sequence[FloatArray], first: int, mirrored: bool = False
+) -> list[NDArray[np.int64]]:
+    """Places of fields that come one particle after the other, or that mirrored ones share."""
+    count = blocks[0].shape[-1]
+    return [first + (0 if mirrored else own * count) + np.arange(count) for own in (0, 1)]
 
 
 def minimum(

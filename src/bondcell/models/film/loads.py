@@ -9,7 +9,7 @@ from bondcell.models.film import lateral
 from bondcell.models.film import torsion as torsion_forms
 from bondcell.models.film.energies import Assembly, least, minimum
 from bondcell.models.film.normal import energies
-from bondcell.models.film.ranges import LONGEST
+from bondcell.models.film.ranges import LONGEST, is_short
 from bondcell.models.model import Springs
 
 RELATIVE_ERROR = 1e-4
@@ -178,7 +178,7 @@ def bending(cell: Cell) -> Springs:
 def _lateral(cell: Cell, assemble: Assembly, power: int) -> Springs:
     flat = cell.ravel()
     value, loss = np.full(flat.radius_i.shape, np.nan), np.zeros(flat.radius_i.shape)
-    short = np.flatnonzero(flat.gap <= LONGEST * flat.cylinder_radius)
+    short = np.flatnonzero(is_short(flat))
     if short.size:
         own = flat.take(short)
         scale = np.maximum(own.radius_i, own.radius_j)

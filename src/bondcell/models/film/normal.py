@@ -6,7 +6,7 @@ import numpy as np
 
 from bondcell.cell import FloatArray
 from bondcell.models.film.domain import Geometry, domain
-from bondcell.models.film.energies import Energies, gram, placed, sum_of_grams
+from bondcell.models.film.energies import Energies, gram, in_a_row, placed, sum_of_grams
 from bondcell.models.film.fields import Fields, fields
 from bondcell.models.film.particles import distances, energy, traces
 
@@ -28,7 +28,9 @@ def energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -
         blocks.append(energy(radius, far, poisson, film_radius))
     trial = fields(space, geometry, *surface)
     shear, bulk = _matrix_energy(trial, space.weights)
-    moved, particles = placed(blocks, trial.first, geometry.mirrored, shear.shape[-1])
+    moved, particles = placed(
+        blocks, in_a_row(blocks, trial.first, geometry.mirrored), shear.shape[-1]
+    )
     return Energies(shear, bulk, particles, trial.isochoric.shape[1], moved)
 
 

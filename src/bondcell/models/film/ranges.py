@@ -33,14 +33,3 @@ def is_resolved(cell: Cell) -> NDArray[np.bool_]:
 def is_short(cell: Cell) -> NDArray[np.bool_]:
     """Whether the gap is short enough for trial fields all along it."""
     return np.broadcast_to(cell.gap <= LONGEST * cell.cylinder_radius, cell.shape)
-
-
-LATERAL_POISSON = 0.499
-"""nu_m up to which shear and bending let elastic particles give way to a film's pressure."""
-
-
-def is_lateral(cell: Cell) -> NDArray[np.bool_]:
-    """Whether shear and bending are resolved: gaps not long, matrix not all but incompressible."""
-    rigid = np.isinf(cell.young_i) & np.isinf(cell.young_j)
-    yielding = (cell.poisson_m <= LATERAL_POISSON) | rigid
-    return np.broadcast_to(is_short(cell) & yielding, cell.shape)

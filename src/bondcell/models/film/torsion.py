@@ -6,7 +6,7 @@ import numpy as np
 
 from bondcell.cell import FloatArray
 from bondcell.models.film.domain import Domain, Geometry, domain, gauss, graded_angles
-from bondcell.models.film.energies import Energies, gram, placed
+from bondcell.models.film.energies import Energies, gram, in_a_row, placed
 from bondcell.models.film.fields import film_coordinate, legendre
 from bondcell.models.film.particles import SOURCES, SURFACE_POINTS, distances
 from bondcell.models.jets import Curve, Jet
@@ -42,7 +42,7 @@ def energies(geometry: Geometry, poisson_i: FloatArray, poisson_j: FloatArray) -
         far = distances(radius, geometry.film_radius)
         form = _energy(radius, far, geometry.film_radius)
         blocks.append(form / (2 * (1 + poisson[..., None])))
-    moved, particles = placed(blocks, first, geometry.mirrored, count)
+    moved, particles = placed(blocks, in_a_row(blocks, first, geometry.mirrored), count)
     return Energies(shear, np.zeros((shear.shape[0], 0, 0)), particles, count, moved)
 
 
