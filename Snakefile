@@ -27,6 +27,19 @@ include: "workflow/rules/atlas.smk"
 include: "workflow/rules/figures.smk"
 include: "workflow/rules/report.smk"
 include: "workflow/rules/surrogate.smk"
+include: "workflow/rules/progress.smk"
+
+
+onstart:
+    say_plan()
+
+
+onsuccess:
+    say_findings()
+
+
+onerror:
+    say_failure(log)
 
 
 # Seconds of work each: a cluster's queue is not for them.

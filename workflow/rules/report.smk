@@ -1,3 +1,6 @@
+FINDINGS = "results/findings.txt"
+
+
 rule report:
     input:
         scenes=lambda _: ancient([f"params/{scene.name}.yaml" for scene in study_scenes()]),
@@ -5,12 +8,13 @@ rule report:
         sources=sources("report.py"),
         templates=data_files("report/templates"),
     output:
-        report(
+        page=report(
             "results/report.html",
             caption="../report/report.rst",
             category="All scenes",
             labels={"page": "the report"},
         ),
+        findings=FINDINGS,
     params:
         sources=contents("report.py"),
         digests=lambda _: {scene.name: scene.digest for scene in study_scenes()},

@@ -7,6 +7,7 @@ from bondcell.report import write_report
 from bondcell.results.kept import was_computed
 from bondcell.scenes.planned_scene import planned_scene
 from bondcell.scenes.scene import load_scene
+from bondcell.storage import replacing
 
 with job("report") as log:
     digests = snakemake.params.digests.values()
@@ -18,5 +19,8 @@ with job("report") as log:
             scenes.append(kept)
         else:
             log.say(f"{name} was edited since its results were computed: left out")
-    page = Path(snakemake.output[0])
-    log.result = f"{len(write_report(page.parent, page, scenes).scenes)} scenes"
+    page = snakemake.output.page
+    written = write_report(Path(page).parent, Path(page), scenes)
+    with replacing(snakemake.output.findings) as path:
+        path.write_text("\n  ".join([f"{page}:", *written.sentences]), encoding="utf-8")
+    log.result = f"{len(written.scenes)} scenes"

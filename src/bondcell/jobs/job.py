@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import logging
+import os
 import sys
 import time
 import warnings
@@ -9,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from bondcell.errors import BondcellError, InputError
+from bondcell.jobs.progress import CLEAR, JOB_FILE
 
 EXIT_FAILED, EXIT_BAD_INPUT = 1, 2
 PROGRESS_SECONDS = 10.0
@@ -36,8 +39,18 @@ class Log:
         self.say(f"{self.result}, {time.perf_counter() - self._start:.2f} s")
 
     def say(self, text: str) -> None:
-        """Print a line under the job's name."""
-        print(f"{self.name}: {text}", file=sys.stderr, flush=True)
+        """Print a line under the job's name, or tell it to who shows the run in one line."""
+        lines = os.environ.get(JOB_FILE)
+        if lines is None:
+            print(f"{self.name}: {text}", file=sys.stderr, flush=True)
+        else:
+            with open(lines, "a", encoding="utf-8") as file:
+                file.write(f"{self.name}: {text}\n")
+
+    def warn(self, text: str) -> None:
+        """Print a line that must be seen, on a line of its own."""
+        clear = CLEAR if JOB_FILE in os.environ else ""
+        print(f"{clear}{self.name}: {text}", file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -57,12 +70,14 @@ def job(name: str) -> Iterator[Log]:
     ...     log.result = "25/25 points"
     """
     log = Log(name)
+    # Its hints about quicker elements concern nobody who runs a study.
+    logging.getLogger("skfem").setLevel(logging.ERROR)
     with warnings.catch_warnings():
-        warnings.showwarning = lambda message, *_: log.say(f"warning: {message}")
+        warnings.showwarning = lambda message, *_: log.warn(f"warning: {message}")
         try:
             yield log
         except BondcellError as error:
-            log.say(f"error: {error}")
+            log.warn(f"error: {error}")
             status = EXIT_BAD_INPUT if isinstance(error, InputError) else EXIT_FAILED
             raise SystemExit(status) from error
     log.close()
