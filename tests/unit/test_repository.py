@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).parents[2]
 LARGEST = 1_000_000
@@ -67,6 +68,24 @@ def test_readme_starts_with_the_two_commands():
         line.split("#")[0].strip() for line in lines if re.match(r"(make|pip|pytest) ", line)
     ]
     assert commands[:2] == ["make study", "make test"]
+
+
+def test_citation_is_valid_and_current():
+    """The keys that the format 1.2.0 requires, and the version of the package."""
+    cited = yaml.safe_load(read("CITATION.cff"))
+    assert {"cff-version", "message", "title", "authors"} <= set(cited)
+    assert (cited["cff-version"], cited["type"]) == ("1.2.0", "software")
+    project = tomllib.loads(read("pyproject.toml"))["project"]
+    assert (cited["version"], cited["license"]) == (project["version"], project["license"])
+    for work in (cited, *cited["references"]):
+        assert work["title"]
+        for author in work["authors"]:
+            assert set(author) <= {"name", "family-names", "given-names"}
+
+
+def test_changelog_has_the_version_or_what_comes():
+    heads = re.findall(r"^## \[(.+?)\]", read("CHANGELOG.md"), flags=re.MULTILINE)
+    assert heads[0] == "Unreleased"
 
 
 def tracked_files() -> list[Path]:

@@ -8,6 +8,7 @@ import pytest
 import xarray as xr
 from compliance_checker.runner import CheckSuite
 
+from bondcell.cli import main
 from bondcell.jobs.batch_files import write_batch
 from bondcell.jobs.batch_plan import plan
 from bondcell.jobs.collect import collect, collect_convergence, collect_other_loads
@@ -237,6 +238,21 @@ def test_tree_opens_whole(files):
     with xr.open_datatree(files["sweep"]) as tree:
         assert set(tree.children) == {"bending", "convergence"}
         assert tree["bending"]["stiffness"].attrs["units"] == "N m rad-1"
+
+
+SHOWN = {
+    "design": ("along sample", "points that are no grid"),
+    "sweep": ("worst points of", "load bending", "convergence study"),
+    "relaxing": ("relaxation of", "constant_bulk", "left at the end"),
+    "specimen": ("lattice_paper", "energy"),
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_shown_in_a_terminal(files, name, capsys):
+    assert main(["show", str(files[name])]) == 0
+    out = capsys.readouterr().out
+    assert all(words in out for words in SHOWN[name])
 
 
 @pytest.mark.slow

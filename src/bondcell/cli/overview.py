@@ -11,6 +11,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 
+FEW = 4
+"""Names of an axis that are listed."""
+
+WORST = 3
+"""Points of a reference that are listed."""
+
+
 def print_overview(path: str) -> None:
     """Print the dimensions, ranges, flags and worst errors of a file.
 
@@ -73,7 +80,10 @@ def _results(study: xr.Dataset) -> str:
     table = accuracy_table(study)
     if not table.empty:
         blocks.append(_errors(study, table))
-    return "\n\n".join(blocks)
+    blocks.append(_worst(study))
+    if "relaxation" in study:
+        blocks.append(_relaxation(study))
+    return "\n\n".join(block for block in blocks if block)
 
 
 def _heading(study: xr.Dataset, path: str) -> str:
@@ -97,10 +107,10 @@ def _axes(study: xr.Dataset) -> str:
         if name == SAMPLE:
             rows.append([name, f"{size} points", "", "points that are no grid"])
             continue
-        values, unit = axis_values(study, name), axis_unit(study, str(name))
-        span = quantity(values.min(), unit)
-        span += f" to {quantity(values.max(), unit)}" if size > 1 else ""
-        rows.append([str(name), f"{size} values", span, meaning(str(name))])
+        words = str(study[name].attrs.get("long_name", "")) if name in study.coords else ""
+        known = meaning(str(name))
+        about = words if known == name else known
+        rows.append([str(name), f"{size} values", _span(study, str(name)), about])
     for name in parameters(study) if is_scattered(study) else ():
         if name not in study.sizes:
             values, unit = axis_values(study, name), axis_unit(study, name)
@@ -110,6 +120,89 @@ def _axes(study: xr.Dataset) -> str:
         if name in study and not study[name].dims:
             rows.append([name, "fixed", quantity(study[name].item(), unit), meaning(name)])
     return text_table(rows, ["input", "", "range", "meaning"])
+
+
+def _span(study: xr.Dataset, axis: str) -> str:
+    """The ends of an axis, or the first of its names."""
+    from bondcell.results.view import axis_unit, axis_values
+    from bondcell.wording import quantity
+
+    values = axis_values(study, axis)
+    if axis not in study.coords:
+        return ""
+    if values.dtype.kind not in "iuf":
+        more = f" and {len(values) - FEW} more" if len(values) > FEW else ""
+        return ", ".join(str(value) for value in values[:FEW]) + more
+    unit = axis_unit(study, axis)
+    ends = dict.fromkeys(quantity(end, unit) for end in (values.min(), values.max()))
+    return " to ".join(ends)
+
+
+def _worst(study: xr.Dataset) -> str:
+    """The points with flags of failures, and with the largest estimates."""
+    import numpy as np
+
+    from bondcell.cli.text_table import text_table
+    from bondcell.results.view import reference_names, stiffness_unit
+    from bondcell.wording import number, quantity
+
+    rows = []
+    for name in reference_names(study) if {"status", "error_estimate"} <= set(study) else []:
+        here = study.sel(model=name)
+        estimate = here["error_estimate"].values
+        # What has no value comes before what has a large estimate.
+        rank = np.where(np.isnan(estimate), np.inf, estimate).ravel()
+        for position in np.argsort(-rank, kind="stable")[:WORST]:
+            place = dict(
+                zip(here["status"].dims, np.unravel_index(position, estimate.shape), strict=True)
+            )
+            point = here.isel(place)
+            where = ", ".join(_at(study, str(axis), int(k)) for axis, k in place.items())
+            value = float(point["stiffness"])
+            shown = quantity(value, stiffness_unit(study)) if np.isfinite(value) else "no value"
+            told = float(point["error_estimate"])
+            rows.append([name, where or "-", shown, number(told, 2), _flag(point["status"])])
+    if not rows:
+        return ""
+    header = ["worst points of", "at", "stiffness", "error estimate", "flag"]
+    return text_table(rows, header)
+
+
+def _at(study: xr.Dataset, axis: str, position: int) -> str:
+    from bondcell.results.view import axis_unit, axis_values
+    from bondcell.wording import at
+
+    return at(axis, axis_values(study, axis)[position], axis_unit(study, axis))
+
+
+def _flag(status: xr.DataArray) -> str:
+    from bondcell.status import Status
+
+    names = {flag.value: flag.name for flag in Status}
+    return names.get(int(status), f"flag {int(status)}")
+
+
+def _relaxation(study: xr.Dataset) -> str:
+    """Series of each model: what is left at the end, errors and flags."""
+    import numpy as np
+
+    from bondcell.cli.text_table import text_table
+    from bondcell.results.view import model_names
+    from bondcell.wording import percent
+
+    rows = []
+    for name in model_names(study):
+        here = study.sel(model=name)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            left = (here["relaxation"].isel(time=-1) / here["relaxation"].isel(time=0)).values
+        left = left[np.isfinite(left)]
+        span = "no value"
+        if left.size:
+            span = " to ".join(dict.fromkeys(percent(end) for end in (left.min(), left.max())))
+        flags = here[["stiffness"]].assign(status=here["series_status"])
+        rows.append([name, span, _flags(flags), _largest(here, "series_error", "{:.1e}")])
+    header = ["relaxation of", "left at the end", "series by flag", "largest error estimate"]
+    return text_table(rows, header)
 
 
 def _models(study: xr.Dataset) -> str:
