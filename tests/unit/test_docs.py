@@ -76,7 +76,7 @@ def test_notebooks(path, results, monkeypatch):
 
 def test_there_is_code_to_run():
     assert {"quickstart", "prony", "extending"} <= {path.stem for path in with_code("python")}
-    assert {"results", "physics", "accuracy"} == {path.stem for path in with_code("cell")}
+    assert {"results", "physics", "accuracy"} <= {path.stem for path in with_code("cell")}
 
 
 @pytest.mark.parametrize("path", with_code("yaml"), ids=lambda path: path.stem)
