@@ -16,20 +16,18 @@ from bondcell.correspondence import correspondence
 from bondcell.inputs import cell_from_study
 from bondcell.jobs.batch import Batch
 from bondcell.jobs.batch_results import about_batch
+from bondcell.jobs.relaxation_layout import laid_out
+from bondcell.jobs.relaxing_points import prony_of, relaxing_study
 from bondcell.jobs.rows import RELAXING_REFERENCE, Row
 from bondcell.models import MODELS
-from bondcell.outputs import FREQUENCY, TIME
 from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
-from bondcell.prony.prony import Prony
 from bondcell.relaxation import relaxation_series
 from bondcell.results.relaxation_names import (
-    TERM_VARIABLES,
-    VARIABLES,
-    attributes,
     with_equal_terms,
 )
-from bondcell.scenes.prony_block import PronyBlock, SeriesCase
+from bondcell.scenes.prony_block import PronyBlock
+from bondcell.scenes.series_cases import SeriesCase
 from bondcell.status import Status
 
 Progress = Callable[[int, int], None]
@@ -98,25 +96,7 @@ def _group(cell: Cell, block: PronyBlock, asked: list[Asked], load: str) -> xr.D
         [_relax(cell, block, case, convention, asked, load) for case in cases]
         for convention in block.conventions
     ]
-    return _dataset(found, block, cases, asked, load)
-
-
-def prony_of(block: PronyBlock, case: SeriesCase) -> Prony:
-    """The series of a scene at its temperature."""
-    prony = Prony(case.weights, case.times, case.relative_to)
-    material = block.known_material(case.material) if case.material else None
-    if material is None or case.temperature in (None, material.temperature):
-        return prony
-    assert case.temperature is not None
-    return prony.shifted(material.shift(case.temperature))
-
-
-def relaxing_study(cell: Cell, case: SeriesCase) -> xr.Dataset:
-    """The points with the modulus that the material brings, if it does."""
-    values = cell.as_dict()
-    if case.young is not None:
-        values = {**values, "young_m": np.full_like(values["young_m"], case.young)}
-    return xr.Dataset({name: ("point", value) for name, value in values.items()})
+    return laid_out(found, block, cases, [model.label for model in asked], load)
 
 
 def _relax(
@@ -184,67 +164,3 @@ def _flags(model: str, series: xr.Dataset, states: list[Cell]) -> NDArray[np.int
     )
     own = np.where(inside, Status.ok, Status.outside_valid_range)
     return np.where(known[:, None], own, always[:, None]).astype(np.int8)
-
-
-def _dataset(
-    found: list[list[dict[str, Any]]],
-    block: PronyBlock,
-    cases: list[SeriesCase],
-    asked: list[Asked],
-    load: str,
-) -> xr.Dataset:
-    width = max(v.shape[-1] for rows in found for row in rows for v in row["K_k"])
-    variables: dict[str, Any] = {}
-    for name, dims in VARIABLES.items():
-        if name not in found[0][0]:
-            continue
-        wide = width if name in TERM_VARIABLES else 0
-        values = np.array([[_padded(row[name], wide) for row in rows] for rows in found])
-        if "model" in dims:
-            values = np.moveaxis(values, 2, 0)
-        elif "convention" not in dims:
-            values = values[0]
-        variables[name] = (dims, values, attributes(name, load))
-    coords = {"model": [model.label for model in asked], **series_coordinates(block, cases)}
-    return xr.Dataset(variables, coords)
-
-
-def _padded(values: Any, width: int) -> Any:
-    """Models on one array, terms padded with NaN to a width."""
-    if not width:
-        return np.array(values)
-    return np.array(
-        [np.pad(v, ((0, 0), (0, width - v.shape[-1])), constant_values=np.nan) for v in values]
-    )
-
-
-def series_coordinates(block: PronyBlock, cases: list[SeriesCase]) -> dict[str, Any]:
-    """Coordinates of the dimensions convention, series, time and frequency."""
-    temperature = [np.nan if case.temperature is None else case.temperature for case in cases]
-    of_series = {
-        "series_kind": [case.kind for case in cases],
-        "series_profile": [case.profile for case in cases],
-        "series_decades": [case.decades for case in cases],
-        "series_relaxing": [case.relaxing_share for case in cases],
-        "series_size": [len(case.times) for case in cases],
-        "temperature": temperature,
-    }
-    about = {
-        "series_kind": {"long_name": "what the series is: kind of material, inline or generated"},
-        "series_profile": {"long_name": "weights of a generated series over its times"},
-        "series_decades": {"units": "1", "long_name": "decades from smallest to largest time"},
-        "series_relaxing": {
-            "units": "1",
-            "long_name": "share of the modulus that relaxes",
-        },
-        "series_size": {"units": "1", "long_name": "terms of the matrix"},
-        "temperature": {"units": "K", "long_name": "temperature"},
-    }
-    labels = {"long_name": "Prony series of the matrix"}
-    return {
-        "convention": ("convention", list(block.conventions), {"long_name": "what relaxes"}),
-        "series": ("series", [case.name for case in cases], labels),
-        "time": ("time", np.concatenate(([0.0], block.times.values())), TIME),
-        "frequency": ("frequency", np.asarray(block.dynamic_frequencies), FREQUENCY),
-        **{name: ("series", values, about[name]) for name, values in of_series.items()},
-    }

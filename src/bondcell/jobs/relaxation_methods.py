@@ -17,7 +17,7 @@ from bondcell.fem.reference import solve
 from bondcell.fem.relaxing_reference import forget, relax
 from bondcell.fem.time_stepping import graded_times, step_through
 from bondcell.inputs import cell_from_study
-from bondcell.jobs.relaxation_batch import prony_of, relaxing_study
+from bondcell.jobs.relaxing_points import prony_of, relaxing_study
 from bondcell.outputs import STIFFNESS_UNITS, TIME
 from bondcell.prony.conventions import Relaxing
 from bondcell.results.names import reference_variants

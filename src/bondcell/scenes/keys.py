@@ -5,8 +5,9 @@ from __future__ import annotations
 from bondcell.scenes.blocks import Case, CellInputs, Convergence, Reference
 from bondcell.scenes.design import Design, Ranges
 from bondcell.scenes.fields import Block
-from bondcell.scenes.prony_block import BondTable, Methods, PronyBlock, Spectrum
+from bondcell.scenes.prony_block import BondTable, Methods, PronyBlock
 from bondcell.scenes.ranges import Range, Span
+from bondcell.scenes.series_cases import Spectrum
 from bondcell.scenes.specimen_block import (
     Ladders,
     SpecimenBlock,
