@@ -4,12 +4,14 @@ import contextlib
 import math
 import subprocess
 import sys
+from decimal import Decimal
 
+import pint
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bondcell.scenes.quantities import NotAllowed, parse_quantity
+from bondcell.scenes.quantities import PREFIXES, NotAllowed, parse_quantity
 
 
 @pytest.mark.parametrize(
@@ -42,6 +44,17 @@ from bondcell.scenes.quantities import NotAllowed, parse_quantity
 )
 def test_value_in_si(text, unit, value):
     assert parse_quantity(text, unit) == value
+
+
+@pytest.mark.parametrize("unit", ["m", "Pa", "s"])
+def test_prefixes_are_those_of_the_library_of_units(unit):
+    registry = pint.UnitRegistry(non_int_type=Decimal)
+    for prefix in PREFIXES:
+        size, _ = registry.get_base_units(registry.parse_units(f"{prefix}{unit}"))
+        of_unit, _ = registry.get_base_units(registry.parse_units(unit))
+        assert parse_quantity(f"7.3 {prefix}{unit}", unit) == float(
+            Decimal("7.3") * Decimal(str(size)) / Decimal(str(of_unit))
+        )
 
 
 @pytest.mark.parametrize("text", ["rigid", "Rigid", ".inf", "inf", math.inf])
@@ -152,6 +165,7 @@ def test_units_library_is_loaded_at_the_first_unit_only():
     code = (
         "import sys; from bondcell.scenes.quantities import parse_quantity as p;"
         "p(1.0, 'm'); p('1e-3', 'm'); p('46 %'); p('rigid', 'Pa', allow_infinite=True);"
-        "assert 'pint' not in sys.modules; p('1 mm', 'm'); assert 'pint' in sys.modules"
+        "p('1 mm', 'm'); assert 'pint' not in sys.modules;"
+        "p('1 inch', 'm'); assert 'pint' in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
