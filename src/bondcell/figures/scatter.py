@@ -101,7 +101,7 @@ def _panel(
         style |= {"markeredgewidth": 0, "rasterized": along.size > MOST_POINTS // 3}
         axes.plot(along[finite], height[finite], label=model_name(model), **style)
     axes.set_xlabel(axis_label(study, parameter))
-    if is_logarithmic(along):
+    if is_logarithmic(along) and not parameter.startswith("poisson"):  # it may begin near zero
         axes.set_xscale("log")
         axes.xaxis.set_minor_locator(NullLocator())
     if _compared(study):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -56,16 +57,18 @@ def read_table(
         return {}, [Violation(name, "absent", "an existing file beside the scene")]
     try:
         columns, violations = (_csv if name.endswith(".csv") else _netcdf)(path)
-    except (OSError, ValueError, UnicodeDecodeError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         return {}, [Violation(name, str(error)[:100], "a readable table")]
     unknown = [column for column in columns if column not in known]
     violations += [
         Violation(f"{name}.{column}", column, f"one of {', '.join(known)}") for column in unknown
     ]
+    if violations:
+        return {}, violations
     rows = max((len(column) for column in columns.values()), default=0)
-    if not columns or not 1 <= rows <= most:
+    if not 1 <= rows <= most:
         violations.append(Violation(name, f"{rows} rows", f"1 to {most} rows of some parameters"))
-    elif not violations:
+    else:
         found = {column: _numbers(column, texts) for column, texts in columns.items()}
         violations = [
             Violation(f"{name}.{column}.{row}", value, allowed)
@@ -76,19 +79,21 @@ def read_table(
     return {}, violations
 
 
-Columns = Mapping[str, Any]
-_Reader = Callable[[Path], tuple[Columns, list[Violation]]]
-
-
 def _csv(path: Path) -> tuple[dict[str, Any], list[Violation]]:
-    import pandas as pd
-
-    # Empty cells and words stay what they are, numbers are read to the last bit.
-    table = pd.read_csv(
-        path, skipinitialspace=True, keep_default_na=False, float_precision="round_trip"
-    )
-    table.columns = [str(column).strip() for column in table.columns]
-    return {name: table[name].to_numpy() for name in table.columns}, []
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
+    names = [name.strip() for name in rows[0]] if rows else []
+    twice = sorted({name for name in names if names.count(name) > 1})
+    violations = [Violation(f"{path.name}.{name}", "twice", "each column once") for name in twice]
+    ragged = [(i, len(row)) for i, row in enumerate(rows[1:]) if len(row) != len(names)]
+    violations += [
+        Violation(f"{path.name}.{i}", f"{found} values", f"{len(names)}, one for each column")
+        for i, found in ragged[:MOST_SHOWN]
+    ]
+    if violations:
+        return {}, violations
+    columns = zip(*rows[1:], strict=True) if len(rows) > 1 else ([] for _ in names)
+    return dict(zip(names, map(list, columns), strict=True)), []
 
 
 def _netcdf(path: Path) -> tuple[dict[str, Any], list[Violation]]:
@@ -123,6 +128,9 @@ def _numbers(column: str, given: Any) -> tuple[FloatArray, list[tuple[int, Any, 
         infinite = np.isinf(numbers) & (numbers > 0) & (column in _INFINITE)
         bad = np.flatnonzero(~np.isfinite(numbers) & ~infinite)[:MOST_SHOWN]
         return numbers, [(int(row), float(numbers[row]), "a finite number") for row in bad]
+    plain = _plain(values)
+    if plain is not None:
+        return plain, []
     unit, infinite_too = UNITS.get(column, "1"), column in _INFINITE
     numbers, wrong = np.full(values.shape, np.nan), []
     for row, text in enumerate(values.tolist()):
@@ -133,3 +141,13 @@ def _numbers(column: str, given: Any) -> tuple[FloatArray, list[tuple[int, Any, 
             if len(wrong) == MOST_SHOWN:
                 break
     return numbers, wrong
+
+
+def _plain(texts: Any) -> FloatArray | None:
+    """Texts as numbers where all of them are finite decimal ones: many at once, to the last bit."""
+    try:
+        numbers = texts.astype(np.float64)
+    except ValueError:
+        return None
+    grouped = any("_" in text for text in texts.tolist())  # digits grouped as in Python
+    return numbers if np.isfinite(numbers).all() and not grouped else None
