@@ -9,6 +9,7 @@ from bondcell.lattice.large import _state, solve_large
 from bondcell.lattice.lattice import lattice
 from bondcell.lattice.pockets import pockets
 from bondcell.lattice.solve import solve
+from bondcell.lattice.walls import wall
 
 POINTS = np.array([[0.0, 0.0], [1.0, 0.1], [0.4, 0.9], [1.5, 1.0]])
 PAIRS = [[0, 1], [0, 2], [1, 2], [1, 3], [2, 3]]
@@ -86,8 +87,9 @@ def test_what_is_linear_only_is_refused():
         POINTS[:3],
         bonds([[0, 1], [1, 2]], 1.0, 1.0, 1.0, offset=0.1),
         pockets([[0, 1, 2]], 1.0, twist=0.1),
+        walls=[wall([2], np.eye(3))],
     )
     with pytest.raises(InputError) as caught:
         solve_large(own, True, 0.0)
     fields = [violation.field for violation in caught.value.violations]
-    assert fields == ["bonds.offset", "pockets.turning, pockets.twist"]
+    assert fields == ["bonds.offset", "pockets.turning, pockets.twist", "walls"]

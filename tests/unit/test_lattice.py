@@ -11,6 +11,7 @@ from bondcell.lattice.pockets import pockets, triangles
 from bondcell.lattice.rigid_modes import rigid_modes
 from bondcell.lattice.solve import solve
 from bondcell.lattice.specimen_geometry import GAP, RADIUS, specimen_packing
+from bondcell.lattice.walls import wall
 
 
 def random_lattice(dimension, seed=0, **changes):
@@ -161,6 +162,41 @@ def test_specimen_is_its_mirror_image():
     left = solve(own, held[mirror], -values[mirror])
     expected = right.motion[mirror] * [-1, 1, -1]
     np.testing.assert_allclose(left.motion, expected, atol=1e-15)
+
+
+def test_wall_of_single_springs_is_the_ground():
+    springs = np.diag([3.0, 2.0, 0.5])
+    two = bonds([[0, 1]], 5.0, 2.0, 1.0)
+    walled = lattice([[0, 0], [1, 0]], two, walls=[wall([1], springs)])
+    grounded = lattice([[0, 0], [1, 0]], two, ground=[[0, 0, 0], np.diag(springs)])
+    held, values = [[True] * 3, [False] * 3], [[0.1, 0.2, 0.3], [0, 0, 0]]
+    one, other = solve(walled, held, values), solve(grounded, held, values)
+    np.testing.assert_allclose(one.motion, other.motion, rtol=1e-12)
+    assert one.energies["ground"] == pytest.approx(other.energies["ground"])
+    # Forces on the held node are what goes into the wall.
+    assert 2 * one.energy == pytest.approx((one.reactions * values).sum())
+
+
+def test_wall_holds_parts_and_couples_nodes():
+    both = np.kron([[2.0, 1.0], [1.0, 2.0]], np.eye(2))
+    apart = lattice([[0, 0], [1, 1]], bonds([[0, 1]], 1.0), walls=[wall([0, 1], both)])
+    pushed = solve(apart, [[True, True], [False, False]], [[1.0, -1.0], [0, 0]])
+    np.testing.assert_allclose(pushed.motion[1], [-0.5, 0.5], atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "text"),
+    [
+        (np.ones((2, 3)), "square"),
+        ([[1.0, 0.5], [0.0, 1.0]], "symmetric"),
+        ([[1.0, 2.0], [2.0, 1.0]], "negative eigenvalue"),
+    ],
+)
+def test_bad_walls(stiffness, text):
+    assert text in str(refusal(wall, [0], stiffness))
+    line = bonds([[0, 1]], 1.0)
+    error = refusal(lattice, [[0, 0], [1, 0]], line, walls=[wall([7], np.eye(3))])
+    assert [v.field for v in error.violations] == ["walls[0].nodes[0]", "walls[0].stiffness"]
 
 
 def test_offset_is_a_lever_of_the_normal_force():

@@ -34,6 +34,7 @@ from bondcell.solid.size_field import size_field
 from bondcell.solid.sphere_mesh import sphere_mesh
 from bondcell.solid.stiffness import Elastic, assemble
 from bondcell.solid.tets import MATRIX, second_order
+from bondcell.solid.wall_margin import wall_stiffness
 
 SOFT, STIFF = Elastic(1.4, 0.46), Elastic(3e4, 0.25)
 CENTRES = [[-1.25, 1.9, 0], [1.25, 1.9, 0], [0, 0, 0]]
@@ -180,6 +181,22 @@ def test_layer_of_the_specimen():
     assert found.deviator == pytest.approx(31.06, rel=1e-2)
     assert found.turn == pytest.approx(8.481, rel=2e-3)
     assert found.twist == pytest.approx(4.638, rel=5e-3)
+
+
+def test_wall_beside_one_sphere():
+    """Stiff across, softer along; the farther the less. The sphere hangs over the bottom."""
+
+    def beside(distance):
+        box = [[-1.3, distance], [0, 2.6], [0, 1.3]]
+        found, moving = wall_stiffness(packing([[0, 1.3, 0]], 1.0, box), SOFT, 1, [2], 1.0)
+        assert moving.tolist() == [0]
+        return found
+
+    near, far = beside(1.3), beside(1.8)
+    for found in (near, far):
+        assert np.linalg.eigvalsh(found).min() > -1e-6 * found.max()
+        assert found[0, 0] > found[1, 1] > 0
+    assert (np.diag(far) < 0.7 * np.diag(near)).all()
 
 
 def test_coarse_matrix_is_the_fine_one_on_linear_functions():

@@ -61,7 +61,8 @@ def solve_large(
     Raises
     ------
     InputError
-        The lattice is not plane, or has offsets or pockets that resist rotations.
+        The lattice is not plane, or has what is linear only: offsets, walls, pockets that resist
+        rotations.
     BondcellError
         Newton's method does not converge.
 
@@ -118,6 +119,8 @@ def _check(lattice: Lattice) -> None:
     if lattice.pockets.turns:
         constants = lattice.pockets.constants()[:, 3:5].tolist()
         violations.append(Violation("pockets.turning, pockets.twist", constants, "0 J"))
+    if lattice.walls:
+        violations.append(Violation("walls", len(lattice.walls), "none"))
     if violations:
         raise InputError(violations)
 

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import bsr_array
 
 from bondcell.cell import FloatArray
@@ -13,6 +14,7 @@ from bondcell.errors import InputError, Violation
 from bondcell.fem.blocks import BlockAssembler, IndexArray
 from bondcell.lattice.bonds import MODES, Bonds, strains
 from bondcell.lattice.pockets import Pockets, pocket_strains, pockets
+from bondcell.lattice.walls import Wall
 
 CHUNK = 50_000
 """Bonds whose element matrices are held at once."""
@@ -32,6 +34,8 @@ class Lattice:
         Stiffness of the springs between each unknown and the ground, shape (nodes, width).
     rotates
         Whether nodes have rotations; without them bonds resist along their axis only.
+    walls
+        Stiffness of walls, each against the motions of several nodes at once.
     """
 
     points: FloatArray
@@ -39,6 +43,7 @@ class Lattice:
     pockets: Pockets
     ground: FloatArray
     rotates: bool
+    walls: tuple[Wall, ...] = ()
 
     @property
     def count(self) -> int:
@@ -90,7 +95,18 @@ class Lattice:
             local = _element_matrices(self.pocket_strains(), self.pockets.constants())
             three.add(slice(None), local)
             total = bsr_array(total + three.matrix())
+        for wall in self.walls:
+            part = BlockAssembler(wall.nodes[np.newaxis], self.count, self.width)
+            part.add(slice(None), wall.stiffness[np.newaxis])
+            total = bsr_array(total + part.matrix())
         return total
+
+    def grounded(self) -> NDArray[np.bool_]:
+        """Unknowns that something ties to the ground, shape (nodes, width)."""
+        result = self.ground > 0
+        for wall in self.walls:
+            result[wall.nodes] |= np.diag(wall.stiffness).reshape(-1, self.width) > 0
+        return result
 
 
 def node_width(dimension: int, rotates: bool) -> int:
@@ -104,6 +120,7 @@ def lattice(
     pockets_: Pockets | None = None,
     ground: ArrayLike = 0.0,
     rotates: bool | None = None,
+    walls: Sequence[Wall] = (),
 ) -> Lattice:
     """Check a lattice.
 
@@ -118,6 +135,8 @@ def lattice(
     rotates
         Whether nodes have rotations. Default: if a bond resists more than its lengthening, or a
         pocket rotations.
+    walls
+        See `bondcell.lattice.walls.wall`.
 
     Raises
     ------
@@ -147,12 +166,22 @@ def lattice(
     springs = np.asarray(ground, dtype=np.float64)
     if not (np.isfinite(springs) & (springs >= 0)).all():
         violations.append(Violation("ground", springs.tolist(), "[0, inf) N/m, N m/rad"))
+    for k, wall in enumerate(walls):
+        violations += _unknown_nodes(f"walls[{k}].nodes", wall.nodes[:, np.newaxis], len(where))
+        if len(wall.stiffness) != width * wall.nodes.size:
+            allowed = f"{width} unknowns for each of its nodes"
+            violations.append(Violation(f"walls[{k}].stiffness", wall.stiffness.shape, allowed))
     if where.shape[1] == 3 and bonds.offset.any():
         violations.append(Violation("bonds.offset", bonds.offset.tolist(), "0 m in space"))
     if violations:
         raise InputError(violations)
     result = Lattice(
-        where, bonds, three, np.broadcast_to(springs, (len(where), width)).copy(), rotates
+        where,
+        bonds,
+        three,
+        np.broadcast_to(springs, (len(where), width)).copy(),
+        rotates,
+        tuple(walls),
     )
     _check_shapes(result)
     return result

@@ -76,7 +76,7 @@ def _free_parts(lattice: Lattice, held: NDArray[np.bool_]) -> list[Violation]:
     middle = np.stack([np.bincount(part, x) / members for x in lattice.points.T], axis=1)
     modes = rigid_modes(lattice.points, lattice.rotates)
     modes = _recentred(lattice, modes, middle[part] - lattice.points.mean(axis=0))
-    supported = held | (lattice.ground > 0)
+    supported = held | lattice.grounded()
     size = modes.shape[2]
     resisted, moved = np.zeros((2, count, size, size))
     for c in range(lattice.width):

@@ -150,4 +150,7 @@ def _by_mode(lattice: Lattice, motion: FloatArray) -> tuple[FloatArray, dict[str
     change = np.einsum("psu,pu->ps", lattice.pocket_strains(), corners)
     energies["pocket"] = float(0.5 * (lattice.pockets.constants() * change**2).sum())
     energies["ground"] = float(0.5 * (lattice.ground * motion**2).sum())
+    for wall in lattice.walls:
+        own_motion = motion[wall.nodes].ravel()
+        energies["ground"] += float(0.5 * own_motion @ wall.stiffness @ own_motion)
     return forces, energies

@@ -141,8 +141,8 @@ def _walls(table: pd.DataFrame, study: xr.Dataset) -> Iterator[Finding]:
         aim = "within" if worst <= AIM else "not within"
         yield Finding(
             f"Sides fixed: the {NAMES[method]} is off by "
-            f"{_span(rows['energy_error'], rows['loading'])}, {aim} {percent(AIM)}; its springs to "
-            "the sides are columns of matrix and know nothing of the margin's own shape."
+            f"{_span(rows['energy_error'], rows['loading'])}, {aim} {percent(AIM)}; what "
+            "a side does to the two particles next to it comes from a cell of the margin alone."
         )
 
 

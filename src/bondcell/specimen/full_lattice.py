@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from bondcell.cell import FloatArray
 from bondcell.fem.blocks import IndexArray
 from bondcell.lattice import specimen_geometry as given
 from bondcell.lattice.bonds import Bonds
+from bondcell.lattice.packing import packing
 from bondcell.lattice.pockets import Pockets, pockets, triangles
+from bondcell.lattice.walls import Wall, wall
 from bondcell.solid.layer_cells import (
     BorderEnergies,
     Layer,
@@ -21,6 +24,7 @@ from bondcell.solid.layer_cells import (
 )
 from bondcell.solid.layer_springs import PairSprings, border_bond, pocket_springs
 from bondcell.solid.stiffness import Elastic
+from bondcell.solid.wall_margin import wall_stiffness
 from bondcell.specimen.bonds import Material
 
 FARTHEST = 2.5 * given.RADIUS
@@ -28,6 +32,16 @@ FARTHEST = 2.5 * given.RADIUS
 
 LENGTH = 2 * given.RADIUS + given.GAP
 """Distance of neighbours' centres [m]."""
+
+
+FINEST_MARGIN = 1.5
+"""Element size relative to the gap in the margin beside a wall, where no gap is looked into."""
+
+RIGHT, BOTTOM = 1, 2
+"""Sides of the box, counted as in ``box.ravel()``."""
+
+MIRRORED = {4: 0, 10: 5}
+"""Spheres next to the right side and their images next to the left one."""
 
 
 @dataclass(frozen=True)
@@ -40,10 +54,28 @@ class LayerEnergies:
         Of a triangle of neighbours.
     borders
         Of a last row, by the distance from it to the border [m].
+    material, per_gap
+        Elastic constants and element size of the cells.
     """
 
     triangle: TriangleEnergies
     borders: Mapping[float, BorderEnergies]
+    material: Material
+    per_gap: float
+
+    @cached_property
+    def walls(self) -> tuple[Wall, Wall]:
+        """What a held side does to the spheres next to it, right and left."""
+        packed, whole = given.specimen_packing(), np.array(given.BOX)
+        near = np.array([4, 10, 16, 17])
+        box = np.array([[packed.centres[4, 0], whole[0, 1]], whole[1], [0.0, whole[2, 1]]])
+        part = packing(packed.centres[near], packed.radii[near], box)
+        matrix = Elastic(self.material.young_matrix, self.material.poisson_matrix)
+        size = max(self.per_gap, FINEST_MARGIN)
+        stiffness, moving = wall_stiffness(part, matrix, RIGHT, [BOTTOM], size)
+        mirrored = np.tile([-1.0, 1.0, -1.0], moving.size)
+        right, left = near[moving], np.array([MIRRORED[k] for k in near[moving].tolist()])
+        return wall(right, stiffness), wall(left, stiffness * mirrored * mirrored[:, np.newaxis])
 
 
 def layer_energies(material: Material, per_gap: float) -> LayerEnergies:
@@ -57,6 +89,8 @@ def layer_energies(material: Material, per_gap: float) -> LayerEnergies:
     return LayerEnergies(
         triangle_energies(layer, per_gap),
         {cover: border_energies(layer, cover, per_gap=per_gap) for cover in set(covers.tolist())},
+        material,
+        per_gap,
     )
 
 

@@ -84,7 +84,8 @@ def specimen_lattice(
     Notes
     -----
     ``lattice_paper`` has its side springs whatever the walls: 22 nodes, 41 elements. In the other
-    ones, particles next to a fixed side stand on `wall_spring` across it and along it.
+    ones, particles next to a fixed side stand on `wall_spring` across it and along it; in
+    ``lattice_full`` on what a cell of the margin gives.
     """
     source, used = VARIANTS[variant]
     packed = specimen_packing()
@@ -102,6 +103,8 @@ def specimen_lattice(
         own, three = full_springs(own, points, springs, layer)
     bare = lattice(points, own, three)
     ground = np.zeros((bare.count, bare.width))
+    if walls == "fixed" and layer is not None:
+        return SpecimenLattice(lattice(points, own, three, walls=layer.walls), bottom)
     if walls == "fixed":
         shear = 1 / (2 * (1 + material.poisson_matrix))
         for node in given.SIDE:
