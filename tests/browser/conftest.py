@@ -41,6 +41,22 @@ SCENES = {
         "models": ["fsi", "generatrix", "cementation", "surrogate"],
         "reference": {"bc": ["roller"], "tolerance": 1e-3},
     },
+    "scattered": {
+        "title": "Points that are no grid",
+        "cell": {**CELL, "poisson_m": 0.3},
+        "sweep": {"gap": ["0.5 mm", "2 mm"]},
+        "design": {
+            "kind": "sobol",
+            "points": 8,
+            "seed": 7,
+            "ranges": {
+                "modulus_ratio": {"start": 10, "stop": 1e4, "spacing": "log"},
+                "poisson_m": {"start": 0, "stop": 0.4},
+            },
+        },
+        "models": ["fsi", "generatrix"],
+        "reference": {"tolerance": 1e-2},
+    },
     "atlas_small": {
         "title": "Small atlas",
         "cell": CELL,

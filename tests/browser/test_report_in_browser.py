@@ -169,6 +169,23 @@ def test_rigid_particles_have_a_place(fresh):
     assert "rigid" in texts(fresh, f"{CHIEF} .plot .role-axis-label text")
 
 
+def test_points_of_a_design_lie_over_any_of_their_parameters(fresh):
+    figure = "#scattered_explorer"
+    marks = f"{figure} .plot .mark-symbol path"
+    assert lines(fresh, figure) == []  # neighbours along x do not belong together
+    assert fresh.locator(marks).count() >= 16
+    places = "all => all.map((path) => path.getAttribute('transform'))"
+    before = fresh.locator(marks).evaluate_all(places)
+    menu = f"{figure} [data-control=across]"
+    for label in ("modulus ratio", "Poisson's ratio of the matrix", "gap"):
+        option = fresh.locator(f"{menu} option", has_text=label).first.text_content()
+        fresh.select_option(menu, label=option)
+        fresh.wait_for_timeout(300)
+        titles = texts(fresh, f"{figure} .plot .role-axis-title text")
+        assert any(label in title for title in titles)
+    assert fresh.locator(marks).evaluate_all(places) != before
+
+
 def test_tables_sort_by_value(fresh):
     table = fresh.locator("section[aria-labelledby=ladders] table").first
     headings = table.locator("thead th").all_text_contents()

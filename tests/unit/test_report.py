@@ -165,6 +165,16 @@ def test_a_folder_without_results(tmp_path):
     assert not list(tmp_path.iterdir())
 
 
+def test_results_of_another_make_are_named(results, synthetic, tmp_path):
+    lacking = synthetic.convergence.drop_vars("reference_error")
+    point = synthetic.point.assign_attrs(parameters=SCENES[1].given_json)
+    write_dataset(point, tmp_path / "ladders" / "study.nc", {"convergence": lacking})
+    with pytest.raises(DataError, match=r"compute the scene again") as caught:
+        write_report(tmp_path, tmp_path / "page.html")
+    assert "ladders/study.nc" in str(caught.value)
+    assert not (tmp_path / "page.html").exists()
+
+
 def test_content(page):
     text = text_of(page)
     assert "Figure &lt;4&gt; &amp; more" in page

@@ -14,6 +14,7 @@ from urllib.parse import quote
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from bondcell.errors import DataError, Violation
 from bondcell.models import MODELS
 from bondcell.report.found_scenes import found_scenes
 from bondcell.report.front import front
@@ -66,7 +67,7 @@ def write_report(results: Path, path: Path, scenes: Iterable[Scene] | None = Non
         A file of results is missing, damaged or of another make.
     """
     wanted = found_scenes(results) if scenes is None else list(scenes)
-    sections = [section for scene in wanted if (section := build_section(scene, results))]
+    sections = [section for scene in wanted if (section := _section(scene, results))]
     done = [section.name for section in sections]
     first = front(sections)
     chief = first.chief[1] if first.chief else None
@@ -89,6 +90,16 @@ def write_report(results: Path, path: Path, scenes: Iterable[Scene] | None = Non
     with replacing(path) as temporary:
         temporary.write_text(page, encoding="utf-8")
     return Written(path, done, first.sentences)
+
+
+def _section(scene: Scene, results: Path) -> Section | None:
+    """A scene's section; what a file lacks is said as an error of the file."""
+    try:
+        return build_section(scene, results)
+    except KeyError as error:
+        wanted = "what this version of bondcell writes: compute the scene again"
+        found = [Violation("content", str(error.args[0])[:80], wanted)]
+        raise DataError(found, str(results / scene.name / "study.nc")) from error
 
 
 def _address(folder: Path, page_folder: Path) -> str:

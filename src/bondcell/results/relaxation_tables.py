@@ -224,7 +224,8 @@ def methods_table(methods: xr.Dataset) -> pd.DataFrame:
                 at = ladder.sel(level=level)
                 if at["status"] == Status.not_computed:
                     continue
-                values = {n: at[n].item() for n in ("refinement", "error", *ATTRIBUTES, "dof")}
+                wanted = [n for n in ("refinement", "error", *ATTRIBUTES, "dof") if n in at]
+                values = {n: at[n].item() for n in wanted}
                 status = Status(int(at["status"])).name
                 rows.append(
                     head | values | {"method": str(method), "level": int(level), "status": status}

@@ -196,7 +196,7 @@ def _across(way: Way) -> Option:
     if way.end:
         place, word = way.end
         axis["labelExpr"] = f"datum.value > {0.9 * place} ? '{word}' : ({POWERS})"
-    scale: dict[str, Any] = {"type": "linear", "zero": False}
+    scale: dict[str, Any] = {"type": "linear"}
     if way.logarithmic:
         scale = {"type": "log"}
     scale |= {"domain": list(way.bounds), "nice": False}

@@ -36,16 +36,23 @@ class Axis:
         Each value as it is printed.
     values
         The numbers or short names, None where the texts are all there is.
+    companions
+        What else is known at each position: axes of the same length.
     """
 
     name: str
     texts: Sequence[str]
     values: Sequence[float | str] | None = None
+    companions: tuple[Axis, ...] = ()
 
     def for_script(self) -> dict[str, Any]:
         """As the page's script reads it."""
         given: dict[str, Any] = {"name": self.name, "texts": list(self.texts)}
-        return given if self.values is None else given | {"values": list(self.values)}
+        if self.values is not None:
+            given["values"] = list(self.values)
+        if self.companions:
+            given["companions"] = [axis.for_script() for axis in self.companions]
+        return given
 
 
 @dataclass(frozen=True)

@@ -22,11 +22,13 @@ from bondcell.report.interactive.figure import Axis, InteractiveFigure, numbers,
 from bondcell.report.interactive.look import PERCENT, POWERS, plain, unit_label
 from bondcell.results.accuracy import signed_error
 from bondcell.results.view import (
+    SAMPLE,
     analytic_names,
     axis_unit,
     axis_values,
     is_scattered,
     model_names,
+    parameters,
     reference_names,
     stiffness_unit,
     swept_axes,
@@ -68,33 +70,37 @@ def sweep_explorer(
     """
     names = list(dict.fromkeys(n for study in loads.values() for n in model_names(study)))
     first = next(iter(loads.values()))
-    drawable = swept_axes(first) and not is_scattered(first)
-    if not names or not drawable or not any(map(_has_values, loads.values())):
+    if not names or not swept_axes(first) or not any(map(_has_values, loads.values())):
         return None
     kept = thinned(first, len(names) * len(loads))
     studies = {load: study.isel(kept) for load, study in loads.items()}
-    axes = [_axis(studies[next(iter(studies))], axis) for axis in swept_axes(first)]
+    thin = next(iter(studies.values()))
+    dims = [_dimension(thin, axis) for axis in swept_axes(first)]
+    axes = [axis for axis in dims if axis.name != SAMPLE]
+    varied = [*axes, *(known for axis in dims for known in axis.companions)]
     compared = any(reference_names(s) and analytic_names(s) for s in studies.values())
-    ordered = sorted(axes, key=lambda axis: _preference(axis.name))
-    ways = [_way(first, axis) for axis in ordered]
-    columns = _columns(studies, names, [axis.name for axis in axes])
-    quantities = _quantities(studies, compared=compared)
+    ways = [_way(first, axis) for axis in sorted(varied, key=lambda axis: _preference(axis.name))]
     load_axis = Axis("load", list(studies))
     menus = [chosen("menu", load_axis, "Load")] if len(studies) > 1 else []
-    sliders = [(axis, f"{meaning(axis.name)} {symbol(axis.name)}", _start(axis)) for axis in axes]
-    set_axes = [load_axis, *axes] if menus else axes
     labels = [model_name(each) for each in names]
     chart = explorer_chart(
-        names, set_axes, ways, _tooltip(axes, compared=compared), _derived(studies)
+        names,
+        [load_axis, *axes] if menus else axes,
+        ways,
+        _tooltip(varied, compared=compared),
+        _derived(studies),
+        with_lines=not is_scattered(first),
     )
+    sliders = [(axis, f"{meaning(axis.name)} {symbol(axis.name)}", _start(axis)) for axis in axes]
+    quantities = _quantities(studies, compared=compared)
     return InteractiveFigure(
         name=name,
-        caption=_caption(first, axes, compared=compared),
+        caption=_caption(first, dims, compared=compared),
         description=_description(studies),
         chart=chart,
-        axes=[load_axis, Axis("name", labels, names), *axes],
-        columns=columns,
-        controls=explorer_controls(sliders if len(axes) > 1 else [], ways, quantities, menus),
+        axes=[load_axis, Axis("name", labels, names), *dims],
+        columns=_columns(studies, names, [axis.name for axis in dims]),
+        controls=explorer_controls(sliders if len(varied) > 1 else [], ways, quantities, menus),
         switches=switches(names, labels),
         replaces=tuple(replaces),
     )
@@ -141,6 +147,15 @@ def _axis(study: xr.Dataset, axis: str) -> Axis:
         return Axis(axis, [str(value) for value in given], list(range(len(given))))
     words = ["rigid" if np.isinf(v) else quantity(v, unit) for v in given.astype(float)]
     return Axis(axis, words, plotted(given.astype(float).tolist()))
+
+
+def _dimension(study: xr.Dataset, name: str) -> Axis:
+    """A dimension of the results; samples of a design bring their parameters along."""
+    if name != SAMPLE:
+        return _axis(study, name)
+    known = [parameter for parameter in parameters(study) if parameter not in study.dims]
+    texts = [str(place) for place in range(study.sizes[SAMPLE])]
+    return Axis(SAMPLE, texts, companions=tuple(_axis(study, name) for name in known))
 
 
 def _way(study: xr.Dataset, axis: Axis) -> Way:
@@ -244,6 +259,8 @@ def _derived(studies: Mapping[str, xr.Dataset]) -> dict[str, str]:
 
 def _caption(study: xr.Dataset, axes: Sequence[Axis], *, compared: bool) -> str:
     words = "Each model over any axis of the sweep; the sliders set the others."
+    if is_scattered(study):
+        words = "Each model at every point of the design, over any of its parameters."
     if compared:
         words += " Errors are those against finite elements; the dashed line is 1 %, or equality."
     words += " Hollow markers carry a flag, such as outside the model's valid range."

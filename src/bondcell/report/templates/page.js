@@ -19,9 +19,11 @@
       for (const axis of axes.toReversed()) {
         const place = rest % axis.texts.length;
         rest = Math.floor(rest / axis.texts.length);
-        row[axis.name] = axis.values ? axis.values[place] : axis.texts[place];
-        row[`${axis.name}_text`] = axis.texts[place];
-        row[`${axis.name}_at`] = place;
+        for (const known of [axis, ...(axis.companions ?? [])]) {
+          row[known.name] = known.values ? known.values[place] : known.texts[place];
+          row[`${known.name}_text`] = known.texts[place];
+          row[`${known.name}_at`] = place;
+        }
       }
       for (const [name, values] of known) row[name] = values[at];
       return row;
