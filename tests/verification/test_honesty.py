@@ -8,6 +8,9 @@ from bondcell.status import Status
 
 SEED = 2013
 
+QUICK = ((0, 0), (0, 1), (1, 0), (1, 1), (2, 0), (3, 1), (4, 0), (4, 1), (5, 2))
+"""Case and number of cells; pairs of equal spheres where a solve of whole cells takes seconds."""
+
 
 def check(case, numbers, tolerance):
     """Compare cells of one load; all estimates must cover the error. Returns the ratios."""
@@ -22,16 +25,16 @@ def check(case, numbers, tolerance):
     return [own.ratio for own in found]
 
 
-@pytest.mark.parametrize("case", range(len(CASES)))
-def test_estimates_cover_the_errors_of_random_cells(case):
-    check(case, range(1), 1e-6)
+@pytest.mark.parametrize(("case", "number"), QUICK)
+def test_estimates_cover_the_errors_of_random_cells(case, number):
+    check(case, [number], 1e-6)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("case", range(len(CASES)))
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-6])
 def test_estimates_cover_the_errors_of_many_random_cells(case, tolerance):
-    ratios = check(case, range(12), tolerance)
+    ratios = check(case, range(8), tolerance)
     assert np.median(ratios) < 100
 
 

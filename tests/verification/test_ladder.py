@@ -43,7 +43,15 @@ def test_estimate_takes_steps_that_do_not_shrink_for_round_off():
     np.testing.assert_allclose(estimate(np.array([[1.01, 1.02, 1.0]]), [6, 7, 8], 4), [0.12])
 
 
-@pytest.mark.parametrize("load", ["normal", "shear", "torsion", "bending"])
+@pytest.mark.parametrize(
+    "load",
+    [
+        "normal",
+        "torsion",
+        pytest.param("shear", marks=pytest.mark.slow),
+        pytest.param("bending", marks=pytest.mark.slow),
+    ],
+)
 def test_ladder_of_true_steps_is_estimated_from_above(load):
     """At every rung that ends a ladder the estimate covers what two more orders still change."""
     case, rate = unit_cell(radius_j=0.7), find_load(load, "roller").rate
@@ -76,7 +84,13 @@ def test_particles_do_not_lag_where_a_confined_matrix_cannot_give_way():
 
 
 @pytest.mark.parametrize(("load", "bc"), list(LOADS))
-@pytest.mark.parametrize("changes", [{}, {"radius_j": 0.6, "gap": 1e-3, "young_i": 1e5}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        pytest.param({"radius_j": 0.6, "gap": 1e-3, "young_i": 1e5}, marks=pytest.mark.slow),
+    ],
+)
 def test_lagging_particles_cost_less_than_an_order_less(load, bc, changes):
     case = unit_cell(**changes)
     lag = particle_lag(geometry_of(case), Materials.of(case), find_load(load, bc))

@@ -14,6 +14,7 @@ from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
 from bondcell.fem.particle_lag import particle_lag
 from bondcell.fem.scouts import Scouts
+from bondcell.fem.strain import SWIRL
 from bondcell.fem.structured import CellSolver, Load
 
 LOWEST, HIGHEST = 4, 14
@@ -40,11 +41,14 @@ ROUND_OFF = 1e-11
 THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
 """Bounds of it where ``kappa/mu`` is large: at a gap of one radius, and in the thinnest films."""
 
+FREE_SHARE = 0.1
+"""Part of these bounds that cells with free sides reach."""
+
 SAFETY = 3.0
 """By how much the estimate exceeds the sum of the steps to come."""
 
-SLOWEST = 1.5
-"""Least rate of convergence an order that steps are taken to have."""
+SLOWEST, QUICKEST = 1.5, 20.0
+"""Least and largest rate of convergence an order that steps are taken to have."""
 
 
 class Ladder:
@@ -87,7 +91,7 @@ class Ladder:
         self.order, self.dof = np.zeros(count, dtype=int), np.zeros(count, dtype=int)
         self.way = np.zeros(count, dtype=np.int8)
         self._materials, self._tolerance = materials, tolerance
-        self._round_off = _round_off(geometry, materials)
+        self._round_off = _round_off(geometry, materials, load)
         self._clock = time.perf_counter()
         mesh = build_cell_mesh(geometry, grading, half)
         lag = particle_lag(geometry, materials, load)
@@ -126,7 +130,7 @@ class Ladder:
             waiting = waiting[~ready]
             if is_end:
                 return
-            step = LONGEST if hurried and len(orders) == 1 else _step(guess, wanted, rate)
+            step = LONGEST if hurried and len(orders) == 1 else _step(guess, wanted)
             orders.append(min(orders[-1] + step, last))
 
     def _solve(self, solver: CellSolver, order: int, points: NDArray[np.int64]) -> None:
@@ -184,17 +188,24 @@ def estimate(rungs: FloatArray, orders: Sequence[int], rate: float) -> FloatArra
     )
 
 
-def _step(guess: FloatArray, wanted: float, rate: float) -> int:
+def _step(guess: FloatArray, wanted: float) -> int:
     """Orders to climb next: fewer by one than the least demanding point seems to need."""
-    needed = np.ceil(np.log(guess.min() / wanted) / np.log(rate))
+    needed = np.ceil(np.log(guess.min() / wanted) / np.log(QUICKEST))
     return int(np.clip(needed - 1, 1, LONGEST))
 
 
-def _round_off(geometry: Geometry, materials: Materials) -> FloatArray:
-    """Nearly incompressible films are badly conditioned, the more the thinner."""
+def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArray:
+    """Nearly incompressible films are badly conditioned, the more the thinner.
+
+    Where the sides are free to move, volume finds its way and a tenth was measured at most; torsion
+    does not change it at all.
+    """
+    if load.whole.mode is SWIRL:
+        return np.full(materials.count, ROUND_OFF)
+    share = 1.0 if load.whole.held.get("lateral") else FREE_SHARE
     poisson = np.max([materials.poisson_i, materials.poisson_j, materials.poisson_m], axis=0)
     thinness = max(geometry.radius_i, geometry.radius_j) / geometry.gap
     largest = np.clip(THIN_ROUND_OFF * np.sqrt(thinness), ROUND_OFF, WORST_ROUND_OFF)
     with np.errstate(divide="ignore"):
         bulk_to_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson))
-    return np.clip(2 * ROUND_OFF * bulk_to_shear, ROUND_OFF, largest)
+    return np.maximum(share * np.minimum(2 * ROUND_OFF * bulk_to_shear, largest), ROUND_OFF)

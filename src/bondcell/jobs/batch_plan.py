@@ -43,6 +43,9 @@ SECONDS_PER_GEOMETRY = 0.5
 SECONDS_PER_STATE = 0.015
 """Cost of solving the ladder at one set of moduli of an assembled geometry [s]."""
 
+SOFT_RATIO, SECONDS_PER_SOFT_STATE = 1e-2, 0.4
+"""Modulus ratio of particles to matrix below which a state costs more, and how much more [s]."""
+
 LARGEST_REFERENCE_BATCH = 50_000
 """Points of one geometry that are kept together: bounds the memory of its job."""
 
@@ -164,7 +167,7 @@ def _cut(
         return
     geometries = [positions[group] for group in geometry_groups(cell_at(cell, positions))]
     if kind == REFERENCE:
-        yield from reference_parts(geometries)
+        yield from reference_parts(geometries, _soft(cell_at(cell, positions)))
     else:
         yield from _parts(geometries, _relaxing_seconds(scene, rows, positions.size))
 
@@ -187,19 +190,29 @@ def analytic_parts(positions: Positions, models: int) -> list[Positions]:
     return [positions[part::parts] for part in range(parts)]
 
 
-def reference_parts(geometries: Sequence[Positions]) -> list[Positions]:
+def _soft(cell: Cell) -> int:
+    """Points whose particles are so soft that the reference has to follow a cusp far."""
+    softest = np.minimum(cell.young_i, cell.young_j) / cell.young_m
+    return int((softest < SOFT_RATIO).sum())
+
+
+def reference_parts(geometries: Sequence[Positions], soft: int = 0) -> list[Positions]:
     """Shares of finite element points, those of a geometry together unless they are very many.
 
     Parameters
     ----------
     geometries
         Positions of the points of each geometry.
+    soft
+        How many of all these points have particles far softer than the matrix.
 
     Examples
     --------
     >>> parts = reference_parts([np.arange(50) + 50 * geometry for geometry in range(40)])
     >>> [part.size for part in parts]
     [1000, 1000]
+    >>> len(reference_parts([np.arange(50) + 50 * k for k in range(40)], soft=500))
+    7
     """
     pieces = [
         geometry[start : start + LARGEST_REFERENCE_BATCH]
@@ -208,6 +221,7 @@ def reference_parts(geometries: Sequence[Positions]) -> list[Positions]:
     ]
     states = sum(geometry.size for geometry in geometries)
     seconds = len(pieces) * SECONDS_PER_GEOMETRY + states * SECONDS_PER_STATE
+    seconds += soft * SECONDS_PER_SOFT_STATE
     return list(_parts(pieces, seconds))
 
 
