@@ -316,6 +316,7 @@ def test_bad_input_is_refused_before_the_work():
     assert refusal(sphere_mesh, packing(CENTRES, 1.0), 1.0) == ["box"]
     assert refusal(sphere_mesh, three(), 0.05, memory=1e9) == ["elements"]
     assert refusal(check_memory, 10**9, 1e9) == ["elements"]
+    assert refusal(Elastic, -1.0, 0.5) == ["young", "poisson"]
 
 
 def test_inverted_element_is_refused():

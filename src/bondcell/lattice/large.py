@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bondcell.cell import FloatArray
 from bondcell.errors import BondcellError, InputError, Violation
+from bondcell.lattice.arrays import spread
 from bondcell.lattice.bonds import bond_lengths
 from bondcell.lattice.lattice import Lattice
 
@@ -86,8 +87,8 @@ def solve_large(
     """
     _check(lattice)
     shape = (lattice.count, lattice.width)
-    fixed = np.broadcast_to(np.asarray(held, dtype=bool), shape)
-    given = np.where(fixed, np.broadcast_to(np.asarray(values, dtype=np.float64), shape), 0.0)
+    fixed = spread("held", held, shape, bool)
+    given = np.where(fixed, spread("values", values, shape, float), 0.0)
     free = ~fixed.ravel()
     motion, newton = np.zeros(shape), 0
     for step in range(1, steps + 1):

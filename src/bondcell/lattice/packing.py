@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
+from bondcell.lattice.arrays import numbers
 
 MOST_LISTED = 20
 """Overlaps listed one by one; what is beyond is counted."""
@@ -88,14 +89,15 @@ def packing(centres: object, radii: object, box: object | None = None) -> Packin
       ...
     bondcell.errors.InputError: centres[0, 1] = 1.5: allowed is a distance above 2.0 m, ...
     """
-    where = np.atleast_2d(np.asarray(centres, dtype=np.float64))
-    if where.ndim != 2 or where.shape[1] != 3:
-        raise InputError([Violation("centres", where.shape, "an array of shape (spheres, 3)")])
-    size = np.asarray(radii, dtype=np.float64)
+    where = np.atleast_2d(numbers("centres", centres))
+    if where.ndim != 2 or where.shape[1] != 3 or not len(where):
+        allowed = "an array of shape (spheres, 3), at least one sphere"
+        raise InputError([Violation("centres", where.shape, allowed)])
+    size = numbers("radii", radii)
     if size.shape not in ((), (len(where),)):
         raise InputError([Violation("radii", size.shape, f"one number or {len(where)} of them")])
     size = np.broadcast_to(size, len(where)).copy()
-    walls = np.full((3, 2), [-np.inf, np.inf]) if box is None else np.asarray(box, dtype=np.float64)
+    walls = np.full((3, 2), [-np.inf, np.inf]) if box is None else numbers("box", box)
     if walls.shape != (3, 2) or not (walls[:, 0] < walls[:, 1]).all():
         allowed = "shape (3, 2), lower below upper wall"
         raise InputError([Violation("box", walls.tolist(), allowed)])

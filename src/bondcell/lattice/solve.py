@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
+from bondcell.lattice.arrays import spread
 from bondcell.lattice.bonds import MODES
 from bondcell.lattice.lattice import Lattice
 from bondcell.lattice.mechanisms import check_supported
@@ -76,7 +77,7 @@ def solve(lattice: Lattice, held: ArrayLike, values: ArrayLike = 0.0) -> Solutio
     Raises
     ------
     InputError
-        A free mechanism; all of them are named.
+        Shapes that do not fit; a free mechanism: all of them are named.
     BondcellError
         The iterative solver does not converge.
 
@@ -90,8 +91,8 @@ def solve(lattice: Lattice, held: ArrayLike, values: ArrayLike = 0.0) -> Solutio
     (0.08, 160.0)
     """
     shape = (lattice.count, lattice.width)
-    fixed = np.broadcast_to(np.asarray(held, dtype=bool), shape)
-    given = np.broadcast_to(np.asarray(values, dtype=np.float64), shape)
+    fixed = spread("held", held, shape, bool)
+    given = spread("values", values, shape, float)
     if not np.isfinite(given[fixed]).all():
         raise InputError([Violation("values", float("nan"), "finite prescribed displacements")])
     matrix = lattice.matrix()

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import bsr_array
 
 from bondcell.cell import FloatArray
+from bondcell.errors import InputError, Violation
 from bondcell.fem.blocks import BlockAssembler, IndexArray
 from bondcell.solid.elements import (
     QUADRATURE,
@@ -39,10 +40,24 @@ class Elastic:
         Young's modulus [Pa].
     poisson
         Poisson's ratio, in (-1, 0.5).
+
+    Raises
+    ------
+    InputError
+        A constant is outside its range.
     """
 
     young: float
     poisson: float
+
+    def __post_init__(self) -> None:
+        violations = []
+        if not 0 < self.young < np.inf:
+            violations.append(Violation("young", self.young, "(0, inf) Pa"))
+        if not -1 < self.poisson < 0.5:
+            violations.append(Violation("poisson", self.poisson, "(-1, 0.5)"))
+        if violations:
+            raise InputError(violations)
 
     @property
     def lame(self) -> tuple[float, float]:
