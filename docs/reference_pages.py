@@ -10,7 +10,7 @@ from bondcell.cli import parser
 from bondcell.models import MODELS
 from bondcell.results.variables import BY_LOAD, SWEPT, groups
 from bondcell.scenes.materials import material_json_schema
-from bondcell.scenes.scene import scene_json_schema
+from bondcell.scenes.schema import scene_json_schema
 
 NOTE = "% Made by docs/reference_pages.py from the code: edit that.\n\n"
 

@@ -18,7 +18,8 @@ from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.report import write_report
 from bondcell.results.accuracy import accuracy_of_loads
 from bondcell.results.load_groups import read_loads
-from bondcell.scenes.scene import Scene, parse_scene
+from bondcell.scenes.parsing import parse_scene
+from bondcell.scenes.scene import Scene
 from bondcell.scenes.study import build_study
 from bondcell.specimen.files import collect_specimen
 from bondcell.specimen.run import run_part

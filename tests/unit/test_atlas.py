@@ -10,7 +10,7 @@ from bondcell.figures.atlas_maps import best_formula
 from bondcell.figures.style import drawing_style, save
 from bondcell.report.atlas_part import atlas_part
 from bondcell.results.atlas import Region, atlas_tables, regions
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.status import Status
 
 CELL = {"radius_i": "7.5 mm", "young_i": "30 GPa", "young_m": "1.4 MPa", "poisson_i": 0.25}

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from bondcell.errors import SceneError
-from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.study_list import load_study_list
 from bondcell.scenes.validate import validate_file
 from bondcell.scenes.yaml_loading import load_mapping

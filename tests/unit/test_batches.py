@@ -19,8 +19,8 @@ from bondcell.jobs.job import job
 from bondcell.jobs.merge import merge
 from bondcell.jobs.reference_batch import compute_reference
 from bondcell.jobs.rows import analytic_rows, reference_rows, wanted_rows
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.planned_scene import planned_scene
-from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 
 SCENE = {

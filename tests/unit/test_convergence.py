@@ -14,7 +14,7 @@ from bondcell.results.convergence import (
     observed_order,
     relative_error,
 )
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset
 

@@ -20,7 +20,8 @@ from bondcell.results.accuracy import accuracy_table
 from bondcell.results.view import parameters
 from bondcell.scenes.design import unit_points
 from bondcell.scenes.points import scene_cell
-from bondcell.scenes.scene import parse_scene, scene_json_schema
+from bondcell.scenes.parsing import parse_scene
+from bondcell.scenes.schema import scene_json_schema
 from bondcell.scenes.study import build_study
 
 CELL = {"radius_i": "7.5 mm", "young_i": "30 GPa", "poisson_i": 0.25, "poisson_m": 0.3}
@@ -230,7 +231,7 @@ def test_schema_takes_what_the_scene_takes():
 
 def test_only_making_the_points_loads_the_library_of_designs():
     code = (
-        "import sys; from bondcell.scenes.scene import parse_scene;"
+        "import sys; from bondcell.scenes.parsing import parse_scene;"
         f"scene = parse_scene({SCENE!r}); scene.digest; scene.points;"
         "assert 'scipy.stats' not in sys.modules; scene.samples;"
         "assert 'scipy.stats' in sys.modules"

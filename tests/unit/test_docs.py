@@ -16,7 +16,7 @@ import pytest
 import bondcell
 from bondcell.cli import parser
 from bondcell.results.variables import groups
-from bondcell.scenes.scene import scene_json_schema
+from bondcell.scenes.schema import scene_json_schema
 from bondcell.scenes.validate import validate_file
 from bondcell.storage import write_dataset
 

@@ -13,7 +13,7 @@ from bondcell.figures.curves import draw_curves
 from bondcell.figures.error_maps import draw_error_maps
 from bondcell.figures.layout import line_layout, map_layout
 from bondcell.figures.style import LINES, drawing_style, save
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 
 SCENE = parse_scene(
     {

@@ -14,7 +14,8 @@ from bondcell.jobs.reference_batch import compute_reference
 from bondcell.jobs.rows import Row
 from bondcell.results.accuracy import accuracy_table
 from bondcell.results.view import load_name, model_names, stiffness_unit
-from bondcell.scenes.scene import parse_scene, scene_json_schema
+from bondcell.scenes.parsing import parse_scene
+from bondcell.scenes.schema import scene_json_schema
 from bondcell.scenes.study import build_study
 from bondcell.status import Status
 from bondcell.storage import read_dataset, write_dataset

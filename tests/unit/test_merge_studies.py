@@ -12,7 +12,7 @@ from bondcell.jobs.collect import collect, collect_other_loads
 from bondcell.jobs.merge_studies import merge_studies
 from bondcell.results.load_groups import read_loads
 from bondcell.results.view import parameters
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.storage import read_dataset, write_dataset
 

@@ -14,8 +14,8 @@ from bondcell.jobs.batch_plan import plan
 from bondcell.jobs.manifest import Entry, read_entry, read_manifest, record
 from bondcell.jobs.point_hash import HashIndex, point_hashes
 from bondcell.jobs.rows import Row
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.points import scene_cell
-from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 
 PARAMS = Path(__file__).parents[2] / "params"

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import bondcell
 from bondcell import provenance
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 
 GIVEN = {
     "title": "One cell",

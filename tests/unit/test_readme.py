@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bondcell.scenes.scene import load_scene
+from bondcell.scenes.parsing import load_scene
 from bondcell.scenes.validate import validate_file
 
 README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")

@@ -26,8 +26,8 @@ from bondcell.results.relaxation_tables import (
 )
 from bondcell.results.relaxation_view import series_words
 from bondcell.scenes.materials import MaterialError, known_materials, load_material, parse_material
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.points import scene_cell
-from bondcell.scenes.scene import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.status import cf_flag_attributes
 
@@ -313,7 +313,7 @@ def test_digests_follow_the_materials(tmp_path):
 def test_scene_without_prony_imports_nothing_of_it():
     code = (
         "import sys\n"
-        "from bondcell.scenes.scene import parse_scene\n"
+        "from bondcell.scenes.parsing import parse_scene\n"
         "from bondcell.scenes.study import build_study\n"
         "from bondcell.jobs.collect import collect\n"
         f"data = {dict(SCENE, prony=None)!r}\n"

@@ -16,7 +16,7 @@ from bondcell.report.sections import build_section
 from bondcell.report.sweep_findings import sweep_findings
 from bondcell.report.symbols import with_subscripts
 from bondcell.results.accuracy import accuracy_table
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.status import Status
 from bondcell.storage import write_dataset
 

@@ -19,7 +19,7 @@ from bondcell.jobs.relaxation_batch import compute_relaxation
 from bondcell.jobs.relaxation_methods import run_methods
 from bondcell.outputs import STIFFNESS_UNITS
 from bondcell.results.variables import groups
-from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.specimen.files import collect_specimen
 from bondcell.specimen.run import run_part

@@ -15,11 +15,12 @@ from bondcell.cell import UNITS, Cell
 from bondcell.errors import InputError
 from bondcell.jobs.point_hash import point_hashes
 from bondcell.jobs.rows import wanted_rows
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.points import scene_cell
 from bondcell.scenes.quantities import UnitsWarning
 from bondcell.scenes.ranges import Range
-from bondcell.scenes.scene import Scene, load_scene, parse_scene, scene_json_schema
-from bondcell.scenes.schema import schema_texts, write_schemas
+from bondcell.scenes.scene import Scene
+from bondcell.scenes.schema import scene_json_schema, schema_texts, write_schemas
 from bondcell.scenes.study_list import load_study_list, study_list_json_schema
 from bondcell.scenes.validate import validate_file
 from bondcell.scenes.yaml_loading import load_mapping
@@ -263,7 +264,7 @@ def test_one_metre_does_not_warn(tmp_path):
 
 def test_planning_a_scene_imports_neither_meshes_nor_datasets():
     code = (
-        "import sys; from bondcell.scenes.scene import load_scene;"
+        "import sys; from bondcell.scenes.parsing import load_scene;"
         "from bondcell.jobs.batch_plan import plan;"
         "[plan(load_scene(path)) for path in sys.argv[1:]];"
         "print(*sorted({m.split('.')[0] for m in sys.modules}))"

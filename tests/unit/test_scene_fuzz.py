@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from bondcell.errors import SceneError
 from bondcell.jobs.batch_plan import plan
-from bondcell.scenes.scene import load_scene
+from bondcell.scenes.parsing import load_scene
 
 MANY = 10_000
 FEW = 200

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bondcell.report.specimen_part import specimen_part
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.specimen.names import METHODS
 from bondcell.specimen.results import combine
 from bondcell.specimen.run import run_part

@@ -19,7 +19,7 @@ from bondcell.report import write_report
 from bondcell.report.stability_part import stability_findings, stability_lines
 from bondcell.results.load_groups import read_loads
 from bondcell.results.stability import FLAGS, condition, stability_summary, stability_table
-from bondcell.scenes.scene import load_scene, parse_scene
+from bondcell.scenes.parsing import load_scene, parse_scene
 from bondcell.scenes.study import build_study
 from bondcell.status import Status
 from bondcell.storage import write_dataset

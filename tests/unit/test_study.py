@@ -5,7 +5,7 @@ import pytest
 
 from bondcell.cell import UNITS
 from bondcell.inputs import cell_from_study
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.scenes.study import build_study
 
 CELL = {

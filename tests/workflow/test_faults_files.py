@@ -5,6 +5,7 @@ import os
 import resource
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ import yaml
 
 from bondcell.errors import CannotWrite
 from bondcell.jobs.batch_plan import plan
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.sealed_files import is_whole, seal
 from bondcell.storage import read_dataset, write_dataset
 
@@ -91,6 +92,20 @@ def test_damaged_batch_of_a_finished_study_is_computed_again(some):
         assert "Nothing to be done" in workspace.snakemake().stdout
 
 
+@pytest.mark.slow
+def test_damaged_study_is_collected_again(some):
+    workspace, before = some
+    study = workspace / STUDY
+    for damage in (truncate, flip_a_bit):
+        assert is_whole(study)
+        study.write_bytes(damage(study.read_bytes()))
+        done = workspace.snakemake(STUDY)
+        assert done.returncode == 0, done.stdout
+        assert f"{STUDY} does not match its checksum: removed" in done.stdout
+        assert "finite elements" not in done.stdout
+        xr.testing.assert_identical(but_times(read_dataset(study)), but_times(before))
+
+
 @pytest.mark.parametrize("damage", [truncate, flip_a_bit, lambda content: content + b" "])
 def test_any_change_breaks_the_seal(tmp_path, damage):
     path = tmp_path / "batch.nc"
@@ -138,6 +153,45 @@ def test_a_disk_that_fills_up_anywhere_leaves_the_old_file_and_nothing_else(tmp_
     assert is_whole(path)
     assert os.listdir(tmp_path) == [path.name]
     assert read_dataset(path).a.max() < 1
+
+
+@contextmanager
+def small_disk(folder, kilobytes):
+    """A file system of that size, while the block runs, where this process may mount one."""
+    folder.mkdir(exist_ok=True)
+    options = ["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "tmpfs", str(folder)]
+    if sys.platform != "linux" or subprocess.run(options, check=False).returncode:
+        pytest.skip("a small disk is a tmpfs, and mounting one needs root on Linux")
+    try:
+        yield
+    finally:
+        # The netCDF library may keep a file open that it could not write.
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
+
+
+def test_a_small_disk_that_is_full_keeps_the_old_file(tmp_path):
+    folder, random = tmp_path / "disk", np.random.default_rng(0)
+    with small_disk(folder, 256):
+        path = write_dataset(xr.Dataset({"a": ("x", random.random(1000))}), folder / "study.nc")
+        before = path.read_bytes()
+        with pytest.raises(CannotWrite, match=r"No space left on device \([\d.e-]+ MB are free"):
+            write_dataset(xr.Dataset({"a": ("x", random.random(100_000))}), path)
+        assert path.read_bytes() == before
+        assert os.listdir(folder) == [path.name]
+
+
+@pytest.mark.slow
+def test_results_on_a_small_disk_are_refused_and_then_computed(make_workspace, tmp_path):
+    workspace = make_workspace(tmp_path, some=SCENE)
+    with small_disk(workspace / "results", 24):
+        done = workspace.snakemake(STUDY)
+        assert done.returncode == 1
+        assert "No space left on device" in done.stdout
+        assert "Traceback" not in done.stdout
+        assert not list((workspace / "results").rglob("*.tmp"))
+    done = workspace.snakemake(STUDY)
+    assert done.returncode == 0, done.stdout
+    assert is_whole(workspace / STUDY)
 
 
 def without_room():

@@ -14,7 +14,7 @@ import xarray as xr
 import yaml
 
 from bondcell.jobs.batch_plan import plan
-from bondcell.scenes.scene import parse_scene
+from bondcell.scenes.parsing import parse_scene
 from bondcell.storage import read_dataset
 
 SCENE = """\

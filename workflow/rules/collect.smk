@@ -3,7 +3,7 @@ rule collect:
     input:
         scene=ancient("params/{scene}.yaml"),
         sources=sources("collect.py"),
-        analytic=lambda wildcards: batch_files(scene_of(wildcards), "analytic"),
+        analytic=lambda wildcards: batch_files(collected_scene(wildcards), "analytic"),
         reference=lambda wildcards: batch_files(scene_of(wildcards), "fe"),
         relaxation=lambda wildcards: batch_files(scene_of(wildcards), "relaxation"),
         methods=lambda wildcards: method_files(scene_of(wildcards)),

@@ -26,7 +26,7 @@ def stop_planning(errors):
 @cache
 def load(path):
     """Read a scene, or give back what is wrong with it."""
-    from bondcell.scenes.scene import load_scene
+    from bondcell.scenes.parsing import load_scene
 
     with warnings.catch_warnings():
         warnings.showwarning = lambda message, *_: print(f"warning: {message}", file=sys.stderr)

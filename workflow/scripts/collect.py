@@ -19,5 +19,5 @@ with job(f"{snakemake.wildcards.scene}: collect") as log:
     groups |= collect_methods(scene, files.methods)
     if scene.specimen:
         result, groups = collect_specimen(scene, files.specimen)
-    write_dataset(result, snakemake.output[0], groups)
+    write_dataset(result, snakemake.output[0], groups, sealed=True)
     log.result = f"{scene.points} points, {len(groups)} groups"

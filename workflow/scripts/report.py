@@ -5,8 +5,8 @@ from pathlib import Path
 from bondcell.jobs.job import job
 from bondcell.report import write_report
 from bondcell.results.kept import was_computed
+from bondcell.scenes.parsing import load_scene
 from bondcell.scenes.planned_scene import planned_scene
-from bondcell.scenes.scene import load_scene
 from bondcell.storage import replacing
 
 with job("report") as log:

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bondcell.errors import DataError, Violation
-from bondcell.scenes.scene import recorded_scene
+from bondcell.scenes.parsing import recorded_scene
 from bondcell.storage import read_dataset
 
 if TYPE_CHECKING:

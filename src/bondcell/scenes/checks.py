@@ -11,6 +11,7 @@ from bondcell.cell import LONG_NAMES, REQUIRED, UNITS, Cell, FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.results.names import models_with
 from bondcell.scenes.design_checks import design_violations
+from bondcell.scenes.keys import KeyPath
 from bondcell.scenes.likely_units import unlikely
 from bondcell.scenes.names import covering
 from bondcell.scenes.points import shaped
@@ -18,7 +19,6 @@ from bondcell.scenes.prony_checks import prony_violations
 from bondcell.scenes.ranges import MOST_POINTS, Span
 from bondcell.scenes.specimen_checks import specimen_violations
 from bondcell.scenes.sweep import DERIVED, resolve_inputs
-from bondcell.scenes.violations import KeyPath
 
 if TYPE_CHECKING:
     from bondcell.scenes.blocks import Case

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from bondcell.errors import Violation
 from bondcell.scenes.design import PARAMETERS, Design
+from bondcell.scenes.keys import KeyPath
 from bondcell.scenes.ranges import MOST_POINTS
 from bondcell.scenes.table_files import read_table
-from bondcell.scenes.violations import KeyPath
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene

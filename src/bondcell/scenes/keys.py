@@ -1,68 +1,45 @@
-"""Which block of a scene stands at which path: for hints on keys that do not exist."""
+"""Which keys may stand at a place of a parameter file: for hints on keys that do not exist."""
 
 from __future__ import annotations
 
-from bondcell.scenes.blocks import Case, CellInputs, Convergence, Reference
-from bondcell.scenes.design import Design, Ranges
+from collections.abc import Iterator
+from typing import Any, get_args
+
 from bondcell.scenes.fields import Block
-from bondcell.scenes.prony_block import BondTable, Methods, PronyBlock
-from bondcell.scenes.ranges import Range, Span
-from bondcell.scenes.series_cases import Spectrum
-from bondcell.scenes.specimen_block import (
-    Ladders,
-    SpecimenBlock,
-    SpecimenFiniteStrain,
-    SpecimenRelaxation,
-)
-from bondcell.scenes.sweep import Sweep
-from bondcell.scenes.time_fields import FrequencySpan, Terms, TimeSpan
-from bondcell.scenes.violations import KeyPath
 
-_BLOCKS: dict[str, type[Block]] = {
-    "cell": CellInputs,
-    "reference": Reference,
-    "convergence": Convergence,
-    "sweep": Sweep,
-    "design": Design,
-    "prony": PronyBlock,
-    "specimen": SpecimenBlock,
-}
-
-_OF_SPECIMEN: dict[str, type[Block]] = {
-    "elastic": Ladders,
-    "rigid": Ladders,
-    "relaxation": SpecimenRelaxation,
-    "finite_strain": SpecimenFiniteStrain,
-    "series": Terms,
-    "times": TimeSpan,
-}
-
-_OF_PRONY: dict[str, type[Block]] = {
-    "series": Terms,
-    "spectrum": Spectrum,
-    "times": TimeSpan,
-    "frequencies": FrequencySpan,
-    "bond": BondTable,
-    "methods": Methods,
-}
+KeyPath = tuple[str | int, ...]
+"""Keys and positions from the top of a file down to a value."""
 
 
-def block_of(path: KeyPath) -> type[Block] | None:
-    """The block at a path, None for the scene itself.
+def known_keys(root: type[Block], path: KeyPath) -> tuple[str, ...]:
+    """Keys that the block at a path may have.
+
+    Parameters
+    ----------
+    root
+        The block that the whole file is.
+    path
+        Where the block stands; what names an entry of a mapping or a list is passed over.
 
     Examples
     --------
-    >>> block_of(("sweep", "gap")).__name__, block_of(()) is None
-    ('Range', True)
+    >>> from bondcell.scenes.scene import Scene
+    >>> known_keys(Scene, ("sweep", "gap"))
+    ('start', 'stop', 'spacing', 'points')
+    >>> known_keys(Scene, ("convergence", "cases", "base"))[:2]
+    ('radius_i', 'radius_j')
     """
-    if not path:
-        return None
-    if len(path) == 1:
-        return _BLOCKS[str(path[0])]
-    if path[0] == "prony":
-        return _OF_PRONY[str(path[1])]
-    if path[0] == "specimen":
-        return _OF_SPECIMEN[str(path[-1])]
-    if path[0] == "design":
-        return Ranges if len(path) == 2 else Span
-    return Range if path[0] == "sweep" else Case
+    block = root
+    for part in path:
+        fields = {field.alias or name: field for name, field in block.model_fields.items()}
+        if part in fields:
+            block = next(_blocks_in(fields[part].annotation), block)
+    return tuple(field.alias or name for name, field in block.model_fields.items())
+
+
+def _blocks_in(annotation: Any) -> Iterator[type[Block]]:
+    """Blocks that a field of this type may hold: in a union, a mapping, a list."""
+    if isinstance(annotation, type) and issubclass(annotation, Block):
+        yield annotation
+    for part in get_args(annotation):
+        yield from _blocks_in(part)

@@ -184,7 +184,7 @@ def parse_material(data: dict[str, Any], source: str | None = None) -> Material:
     except ValidationError as error:
         violations += [
             found if path else Violation("material", ", ".join(map(str, data)), found.allowed)
-            for path, found in found_violations(error, _known_keys)
+            for path, found in found_violations(error, Material)
         ]
     if violations:
         raise MaterialError({v.field: v for v in reversed(violations)}.values(), source)
@@ -209,8 +209,3 @@ def material_json_schema() -> dict[str, Any]:
     schema = Material.model_json_schema(schema_generator=SceneSchema)
     about = {"title": "bondcell material", "description": "How a matrix relaxes."}
     return {"$schema": SceneSchema.schema_dialect, **schema, **about}
-
-
-def _known_keys(path: tuple[str | int, ...]) -> tuple[str, ...]:
-    block: type[Block] = {"wlf": Wlf, "arrhenius": Arrhenius}.get(str(path[0])) if path else None  # type: ignore[assignment]
-    return tuple((block or Material).model_fields)

@@ -6,8 +6,9 @@ import warnings
 from pathlib import Path
 
 from bondcell.errors import DataError, Violation
+from bondcell.scenes.parsing import load_scene
 from bondcell.scenes.quantities import UnitsWarning
-from bondcell.scenes.scene import Scene, load_scene
+from bondcell.scenes.scene import Scene
 
 
 def planned_scene(path: str | Path, **planned: str) -> Scene:

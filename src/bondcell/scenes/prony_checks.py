@@ -11,9 +11,9 @@ import numpy as np
 from bondcell.errors import Violation
 from bondcell.relaxing_ranges import TIMES
 from bondcell.results.names import result_names
+from bondcell.scenes.keys import KeyPath
 from bondcell.scenes.materials import Material
 from bondcell.scenes.prony_block import MOST_SERIES, PronyBlock
-from bondcell.scenes.violations import KeyPath
 
 if TYPE_CHECKING:
     from bondcell.scenes.scene import Scene

@@ -5,10 +5,22 @@ from __future__ import annotations
 import json
 import sys
 from pathlib import Path
+from typing import Any
 
+from bondcell.scenes.fields import SceneSchema
 from bondcell.scenes.materials import material_json_schema
-from bondcell.scenes.scene import scene_json_schema
+from bondcell.scenes.scene import Scene
 from bondcell.scenes.study_list import study_list_json_schema
+
+
+def scene_json_schema() -> dict[str, Any]:
+    """JSON schema of a scene file, for editors."""
+    schema = Scene.model_json_schema(schema_generator=SceneSchema)
+    about = {
+        "title": "bondcell scene",
+        "description": "What it names is computed; what it leaves out is not even imported.",
+    }
+    return {"$schema": SceneSchema.schema_dialect, **schema, **about}
 
 
 def schema_texts() -> dict[str, str]:

@@ -38,7 +38,7 @@ def build_study(scene: Scene) -> xr.Dataset:
 
     Examples
     --------
-    >>> from bondcell.scenes.scene import parse_scene
+    >>> from bondcell.scenes.parsing import parse_scene
     >>> study = build_study(
     ...     parse_scene(
     ...         {

@@ -57,8 +57,7 @@ def load_study_list(path: str | Path) -> tuple[str, ...]:
     try:
         names = StudyList.model_validate(data).scenes
     except ValidationError as error:
-        keys = tuple(StudyList.model_fields)
-        found = [violation for _, violation in found_violations(error, lambda _: keys)]
+        found = [violation for _, violation in found_violations(error, StudyList)]
         raise SceneError(found, source=str(path)) from None
     missing = [
         Violation(f"scenes.{i}", name, f"a scene with a file {name}.yaml in {Path(path).parent}")

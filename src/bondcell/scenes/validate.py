@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bondcell.errors import SceneError, Violation
+from bondcell.scenes.parsing import load_scene
 from bondcell.scenes.quantities import UnitsWarning
-from bondcell.scenes.scene import load_scene
 from bondcell.scenes.study_list import load_study_list
 from bondcell.scenes.yaml_loading import load_mapping
 

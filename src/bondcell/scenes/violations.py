@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
 from typing import Any
@@ -10,9 +10,9 @@ from typing import Any
 from pydantic import ValidationError
 
 from bondcell.errors import Violation
+from bondcell.scenes.fields import Block
+from bondcell.scenes.keys import KeyPath, known_keys
 from bondcell.scenes.quantities import NotAllowed
-
-KeyPath = tuple[str | int, ...]
 
 _PLAIN = {
     "model_type": "a mapping of keys to values",
@@ -28,7 +28,7 @@ _TAGS = ("list", "range", "[key]")
 
 
 def found_violations(
-    error: ValidationError, known_keys: Callable[[KeyPath], tuple[str, ...]]
+    error: ValidationError, root: type[Block]
 ) -> Iterator[tuple[KeyPath, Violation]]:
     """KeyPath and violation of everything the library complains about.
 
@@ -36,13 +36,13 @@ def found_violations(
     ----------
     error
         The library's exception.
-    known_keys
-        KeyPath of a block -> the keys it may have.
+    root
+        The block that the whole file should be.
     """
     for record in error.errors(include_url=False):
         path = _plain_path(record["loc"])
         value = None if record["type"] == "missing" else record["input"]
-        allowed = _allowed(record, path, known_keys)
+        allowed = _allowed(record, path, root)
         yield path, Violation(dotted(path), value, allowed)
 
 
@@ -98,15 +98,13 @@ def _plain_path(location: KeyPath) -> KeyPath:
     )
 
 
-def _allowed(
-    record: Mapping[str, Any], path: KeyPath, known_keys: Callable[[KeyPath], tuple[str, ...]]
-) -> str:
+def _allowed(record: Mapping[str, Any], path: KeyPath, root: type[Block]) -> str:
     kind = record["type"]
     context = record.get("ctx", {})
     if isinstance(context.get("error"), NotAllowed):
         return str(context["error"].allowed)
     if kind == "extra_forbidden":
-        keys = known_keys(path[:-1])
+        keys = known_keys(root, path[:-1])
         close = get_close_matches(str(path[-1]), keys, 1)
         hint = f"; did you mean {close[0]}?" if close else ""
         return f"one of the keys {', '.join(keys)}{hint}"
