@@ -19,8 +19,8 @@ from bondcell.jobs.point_hash import point_hashes
 from bondcell.results.accuracy import accuracy_table
 from bondcell.results.view import parameters
 from bondcell.scenes.design import unit_points
-from bondcell.scenes.points import scene_cell
 from bondcell.scenes.parsing import parse_scene
+from bondcell.scenes.points import scene_cell
 from bondcell.scenes.schema import scene_json_schema
 from bondcell.scenes.study import build_study
 

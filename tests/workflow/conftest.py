@@ -138,16 +138,16 @@ class Workspace:
 
     def plans(self, edits: dict[str, tuple[str, str, str]]) -> dict[str, dict[str, int]]:
         """Name of an edit -> rules that it would make run, and how often."""
-        outputs = self._dry("plans.py", edits)
+        outputs = self._planned(edits)
         return {name: planned_rules(text) for name, text in outputs.items()}
 
     def dry_runs(self, targets: list[str]) -> dict[str, str]:
         """Target -> what a dry run prints, its exit status at the end."""
-        return self._dry("dry_runs.py", targets)
+        return self._planned(targets)
 
-    def _dry(self, program: str, asked: Any) -> dict[str, str]:
+    def _planned(self, asked: Any) -> dict[str, str]:
         done = subprocess.run(
-            [sys.executable, Path(__file__).with_name(program)],
+            [sys.executable, Path(__file__).with_name("plans.py")],
             cwd=self.folder,
             env=self.environment,
             input=json.dumps(asked),

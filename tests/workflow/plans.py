@@ -1,6 +1,7 @@
-"""Plans of many edits in one process: what Snakemake would do after each, the file as before again.
+"""Plans in one process: what Snakemake would do after each of many edits, or for each target.
 
-Reads ``{name: [file, old, new]}`` as JSON, in the workspace's folder; writes ``{name: output}``.
+Reads as JSON, in the workspace's folder, ``{name: [file, old, new]}``, of which each file is as
+before afterwards, or a list of targets; writes ``{name or target: output}``.
 """
 
 import contextlib
@@ -38,6 +39,9 @@ def plan_after(file: str, old: str, new: str) -> str:
 
 
 if __name__ == "__main__":
-    edits = json.load(sys.stdin)
-    answers = {name: plan_after(*edit) for name, edit in edits.items()}
+    asked = json.load(sys.stdin)
+    if isinstance(asked, dict):
+        answers = {name: plan_after(*edit) for name, edit in asked.items()}
+    else:
+        answers = {target: plan(target) for target in asked}
     json.dump(answers, sys.stdout)
