@@ -11,6 +11,7 @@ import numpy as np
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.fem.cell_mesh import Geometry
+from bondcell.fem.condensed_system import without_insides
 from bondcell.fem.full_system import full_systems
 from bondcell.fem.materials import Materials
 from bondcell.fem.one_modulus import REACH, reduce_one
@@ -167,7 +168,8 @@ def _of_two(matrix: Relaxing, load: str, bc: str, tolerance: float) -> _Reduced:
     order = int(ends.order.max())
     systems = full_systems(matrix.cell, order, load, bc)
     bears = _carries_pressure(matrix, load, bc)
-    model = reduce_two(matrix, systems, lowest, bears, REDUCTION)
+    matrices = tuple(without_insides(system) for system in systems)
+    model = reduce_two(matrix, matrices, lowest, bears, REDUCTION)
     return _Reduced(
         series=model.series,
         discretisation=_discretisation(ends, model.stiffness(x, y)),
