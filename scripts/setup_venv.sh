@@ -54,7 +54,7 @@ fi
 touch $unfinished
 rm -f "$stamp"
 pip="$venv/bin/python -m pip --disable-pip-version-check --no-input"
-echo "Installing the locked dependencies into $venv (about a minute the first time)"
+echo "Installing the locked dependencies into $venv (1.4 GB, a minute or two the first time)"
 $pip install --quiet --quiet --require-hashes -r requirements.lock
 $pip install --quiet --quiet --no-deps --no-build-isolation -e .
 rm -f $unfinished

@@ -138,3 +138,14 @@ def test_ratio_of_bulk_and_shear_modulus():
     assert bulk_to_shear(0.5) == np.inf
     assert bulk_to_shear(0.0) == pytest.approx(2 / 3)
     assert bulk_to_shear(0.25) == pytest.approx(5 / 3)
+
+
+def test_elements_of_order_two_are_silent(capfd):
+    from bondcell.cell import Cell
+    from bondcell.fem.reference import solve
+
+    cell = Cell.from_values(
+        radius_i=7.5e-3, gap=5e-4, young_i=3e10, young_m=1.4e6, poisson_i=0.25, poisson_m=0.46
+    )
+    solve(cell.ravel(), tolerance=1e-2)
+    assert capfd.readouterr() == ("", "")
