@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from bondcell.errors import DataError, Violation
 from bondcell.inputs import cell_from_study
@@ -59,52 +60,54 @@ def collect_relaxation(
     parts = [batch for batch in found if batch.attrs["load"] == load]
     cell, dims = cell_from_study(study)
     places = Places(cell)
-    shape = cell.shape
     names = result_names(scene)
     known = {name: names.index(name) for name in scene.models}
     for name, variant in reference_variants(scene, load).items():
         known[f"{REFERENCE}_{variant}"] = names.index(name)
-    first = parts[0]
-    sizes = {**first.sizes, "model": len(names), "point": int(np.prod(shape))}
-    present = [name for name in VARIABLES if name in first]
-    values = {
-        name: np.full(
-            [sizes[dim] for dim in VARIABLES[name]], _BLANK.get(name, np.nan), first[name].dtype
-        )
-        for name in present
-    }
-    seen = np.zeros((sizes["model"], sizes["point"]), dtype=bool)
-    asked = [row.model for row in relaxation_rows(scene, load)]
-    for part in parts:
-        labels = [str(name) for name in part["model"].values]
-        ours = [i for i, label in enumerate(labels) if label in known]
-        rows = np.array([known[labels[i]] for i in ours], dtype=int)
-        inside, where = places.of(part)
-        kept = {"model": ours, "point": np.flatnonzero(inside)}
-        seen[np.ix_(rows, where)] = True
-        for name in present:
-            chosen: list[Any] = [np.arange(sizes[dim]) for dim in VARIABLES[name]]
-            taken = part[name].isel({d: i for d, i in kept.items() if d in VARIABLES[name]})
-            for dim, positions in (("model", rows), ("point", where)):
-                if dim in VARIABLES[name]:
-                    chosen[VARIABLES[name].index(dim)] = positions
-            values[name][np.ix_(*chosen)] = taken.values
-    wanted = np.array([known[row] for row in asked])
-    lost = np.count_nonzero(~seen[np.ix_(wanted, places.first)].all(axis=0))
+    sizes = {**parts[0].sizes, "model": len(names), "point": places.points}
+    values, seen = _filled(parts, known, places, sizes)
+    asked: Any = [known[row.model] for row in relaxation_rows(scene, load)]
+    lost = np.count_nonzero(~seen[np.ix_(asked, places.first)].all(axis=0))
     if lost:
         missing = f"{lost} of {places.first.size} points missing"
         raise DataError([Violation(f"relaxation under {load}", missing, "each point")])
-    if places.same is not None:
-        for name in present:
-            if "point" in VARIABLES[name]:
-                at = VARIABLES[name].index("point")
-                values[name] = np.take(values[name], places.same, axis=at)
     variables = {
-        name: _on_axes(values[name], VARIABLES[name], dims, shape, attributes(name, load))
-        for name in present
+        name: _on_axes(found, VARIABLES[name], dims, cell.shape, attributes(name, load))
+        for name, found in values.items()
     }
-    coords = {name: coord for name, coord in first.coords.items() if name != "model"}
+    coords = {name: coord for name, coord in parts[0].coords.items() if name != "model"}
     return xr.Dataset(variables, coords)
+
+
+def _filled(
+    parts: Sequence[xr.Dataset],
+    known: Mapping[str, int],
+    places: Places,
+    sizes: Mapping[Hashable, int],
+) -> tuple[dict[str, NDArray[Any]], NDArray[np.bool_]]:
+    """Every variable at every point, and which points of which models some part has."""
+    values = {
+        name: np.full([sizes[dim] for dim in dims], _BLANK.get(name, np.nan), parts[0][name].dtype)
+        for name, dims in VARIABLES.items()
+        if name in parts[0]
+    }
+    seen = np.zeros((sizes["model"], sizes["point"]), dtype=bool)
+    for part in parts:
+        labels = [str(name) for name in part["model"].values]
+        ours = [i for i, label in enumerate(labels) if label in known]
+        inside, where = places.of(part)
+        kept = {"model": ours, "point": np.flatnonzero(inside)}
+        target: dict[str, Any] = {"model": [known[labels[i]] for i in ours], "point": where}
+        seen[np.ix_(target["model"], where)] = True
+        for name, whole in values.items():
+            taken = part[name].isel({d: i for d, i in kept.items() if d in VARIABLES[name]})
+            at: list[Any] = [target.get(dim, np.arange(sizes[dim])) for dim in VARIABLES[name]]
+            whole[np.ix_(*at)] = taken.values
+    if places.same is not None:
+        for name in [name for name in values if "point" in VARIABLES[name]]:
+            along = VARIABLES[name].index("point")
+            values[name] = np.take(values[name], places.same, axis=along)
+    return values, seen
 
 
 def _on_axes(
