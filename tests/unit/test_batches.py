@@ -84,10 +84,15 @@ def cuts(geometries, states):
 
 
 def test_jobs_grow_with_the_work_and_never_one_a_point():
-    assert len(analytic_parts(np.arange(10_000), 6)) == 0
-    assert len(analytic_parts(np.arange(100_000), 6)) == 1
-    assert len(analytic_parts(np.arange(1_000_000), 1)) == 2
-    assert len(analytic_parts(np.arange(1_000_000), 9)) == 5
+    points = np.arange(1_000_000)[:, None]
+    assert len(analytic_parts(points[:100_000], ["fsi"])) == 0
+    assert len(analytic_parts(points, ["fsi"])) == 2
+    assert len(analytic_parts(points[:200_000], ["fsi", "cementation"])) == 1
+    assert len(analytic_parts(list(points[:20]), ["bounds"])) == 1
+    assert len(analytic_parts(list(points[:10_000]), ["fsi", "film"])) == 2
+    assert len(analytic_parts(list(points), ["fsi", "film"])) == 100
+    shares = analytic_parts(list(points[:10_000].reshape(100, 100)), ["bounds"])
+    assert sorted(np.concatenate(shares).tolist()) == list(range(10_000))
     assert len(cuts(200, 100)) == 10
     assert len(cuts(2, 120_000)) == 6
     assert len(cuts(100_000, 1)) == 100

@@ -164,10 +164,12 @@ def test_what_values_depend_on_makes_other_batches(changes):
 def test_an_added_model_is_computed_alone():
     dense = {"gap": {"start": 1e-4, "stop": 1e-3, "points": 1000}}
     dense |= {"modulus_ratio": {"start": 1, "stop": 1e6, "points": 200, "spacing": "log"}}
-    small = scene(sweep=dense, reference=None)
+    small = scene(sweep=dense, reference=None, models=["cementation"])
     (batch,) = plan(small).new
-    more = plan(scene(sweep=dense, reference=None, models=["film", "fsi"]), entries(batch))
-    assert [new.models for new in more.new] == [("film",)]
+    wider = scene(sweep=dense, reference=None, models=["surrogate", "cementation"])
+    more = plan(wider, entries(batch), lambda _: True)
+    assert [new.models for new in more.new] == [("surrogate",)]
+    assert batch.name in more.needed
 
 
 def test_manifest_keeps_points_and_notices_damage(tmp_path):

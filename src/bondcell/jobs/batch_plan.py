@@ -31,8 +31,14 @@ MOST_JOBS = 100
 WORTH_A_JOB = 3.0
 """Analytic work below this is done where the scene is collected: no job of its own [s]."""
 
-SECONDS_PER_ANALYTIC_POINT = 2e-5
-"""Cost of one analytic model at one point, mean of quick and slow models [s]."""
+SECONDS_PER_FORMULA = 2e-7
+"""Cost of a formula at a point [s]."""
+
+SECONDS_PER_POINT = {"cementation": 2e-5, "surrogate": 1.5e-5, "film": 3e-4, "bounds": 1.5e-3}
+"""Cost of the models that are more than a formula, at a point [s]."""
+
+SECONDS_PER_MODEL_GEOMETRY = {"film": 4e-3, "bounds": 0.15}
+"""What some of them cost at every other geometry besides [s]."""
 
 LARGEST_ANALYTIC_BATCH = 500_000
 """Points of an analytic batch at most: bounds the memory of its job."""
@@ -162,32 +168,55 @@ def _cut(
 ) -> Iterator[Positions]:
     """Shares of the points, each a batch; strided, so that costly corners are spread."""
     kind = rows[0].kind
-    if kind == ANALYTIC:
-        yield from analytic_parts(positions, len(rows))
+    models = [row.model for row in rows]
+    if kind == ANALYTIC and not any(model in SECONDS_PER_MODEL_GEOMETRY for model in models):
+        yield from analytic_parts(positions[:, None], models)
         return
     geometries = [positions[group] for group in geometry_groups(cell_at(cell, positions))]
+    if kind == ANALYTIC:
+        yield from analytic_parts(geometries, models)
+        return
     if kind == REFERENCE:
         yield from reference_parts(geometries, _soft(cell_at(cell, positions)))
     else:
         yield from _parts(geometries, _relaxing_seconds(scene, rows, positions.size))
 
 
-def analytic_parts(positions: Positions, models: int) -> list[Positions]:
+def analytic_parts(
+    pieces: Sequence[Positions] | Positions, models: Sequence[str]
+) -> list[Positions]:
     """Shares of analytic points; none where the models are quicker than a job starts.
+
+    Parameters
+    ----------
+    pieces
+        Positions of the points of each geometry; where no model gains from a common geometry,
+        each point alone, shape (points, 1).
+    models
+        Names of the models.
 
     Examples
     --------
-    >>> analytic_parts(np.arange(500), models=6)
+    >>> points = np.arange(1_000_000)[:, None]
+    >>> analytic_parts(points[:1000], ["fsi", "surrogate"])
     []
-    >>> [part.size for part in analytic_parts(np.arange(500_000), models=6)]
-    [250000, 250000]
+    >>> [part.size for part in analytic_parts(points, ["fsi", "surrogate"])]
+    [500000, 500000]
     """
-    seconds = positions.size * models * SECONDS_PER_ANALYTIC_POINT
-    if seconds < WORTH_A_JOB:
+    points = _joined(pieces).size
+    seconds = points * sum(SECONDS_PER_POINT.get(name, SECONDS_PER_FORMULA) for name in models)
+    seconds += len(pieces) * sum(SECONDS_PER_MODEL_GEOMETRY.get(name, 0.0) for name in models)
+    most = ceil(points / LARGEST_ANALYTIC_BATCH)
+    if seconds < WORTH_A_JOB and most == 1:
         return []
-    most = ceil(positions.size / LARGEST_ANALYTIC_BATCH)
-    parts = max(most, min(MOST_JOBS, ceil(seconds / JOB_SECONDS)))
-    return [positions[part::parts] for part in range(parts)]
+    parts = max(most, min(len(pieces), MOST_JOBS, ceil(seconds / JOB_SECONDS)))
+    return [_joined(pieces[part::parts]) for part in range(parts)]
+
+
+def _joined(pieces: Sequence[Positions] | Positions) -> Positions:
+    """All positions of some pieces, ascending."""
+    whole = pieces.ravel() if isinstance(pieces, np.ndarray) else np.concatenate(pieces)
+    return np.sort(whole)
 
 
 def _soft(cell: Cell) -> int:
@@ -228,7 +257,7 @@ def reference_parts(geometries: Sequence[Positions], soft: int = 0) -> list[Posi
 def _parts(pieces: Sequence[Positions], seconds: float) -> Iterator[Positions]:
     parts = max(1, min(len(pieces), MOST_JOBS, ceil(seconds / JOB_SECONDS)))
     for part in range(parts):
-        yield np.sort(np.concatenate(pieces[part::parts]))
+        yield _joined(pieces[part::parts])
 
 
 def _relaxing_seconds(scene: Scene, rows: tuple[Row, ...], points: int) -> float:
