@@ -10,6 +10,8 @@ from bondcell.cell import UNITS
 from bondcell.evaluate import evaluate
 from bondcell.storage import read_dataset
 
+pytestmark = pytest.mark.slow  # tests/unit/test_designs.py has what needs no workflow
+
 CELL = "cell: {radius_i: 7.5 mm, young_i: 30 GPa, poisson_i: 0.25, poisson_m: 0.3}"
 SOBOL = f"""\
 title: A sequence

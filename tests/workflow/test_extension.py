@@ -63,6 +63,14 @@ def values(study):
     return study.drop_vars("seconds")
 
 
+def test_another_gap_instead_of_one_computes_its_points_alone(growing):
+    points, study = growing.run(("gap: [0.5 mm, 2 mm]", "gap: [3 mm, 5e-4]"))
+    assert points == [("fe_roller", 2), ("fe_torsion", 2)]
+    assert (study["status"].sel(model="fe") == 0).all()
+    assert study["gap"].values.tolist() == [3e-3, 5e-4]
+
+
+@pytest.mark.slow
 def test_an_added_gap_computes_its_points_alone(growing):
     points, study = growing.run(("gap: [0.5 mm, ", "gap: [0.5 mm, 1 mm, "))
     assert points == [("fe_roller", 2), ("fe_torsion", 2)]
@@ -70,6 +78,7 @@ def test_an_added_gap_computes_its_points_alone(growing):
     assert study["gap"].values.tolist() == [5e-4, 1e-3, 2e-3]
 
 
+@pytest.mark.slow
 def test_removed_and_turned_points_compute_nothing(growing):
     turned = (
         "gap: [0.5 mm, 2 mm], modulus_ratio: [10, 1e4]",
@@ -118,7 +127,7 @@ def test_a_lost_or_damaged_manifest_is_written_again(growing):
 
 
 def test_what_only_looks_records_nothing(growing):
-    growing.workspace.write("params/grows.yaml", SCENE.replace("2 mm", "3 mm"))
+    growing.workspace.write("params/grows.yaml", SCENE.replace("2 mm", "4 mm"))
     before = sorted(os.listdir(growing.folder / "manifest"))
     planned = growing.workspace.snakemake("--dry-run", STUDY)
     assert "reference        2" in planned.stdout
