@@ -8,7 +8,7 @@ from bondcell.models import MODELS
 from bondcell.models.film import reduced
 from bondcell.models.film.loads import RELATIVE_ERROR
 from bondcell.models.film.reduced import MANY, TOLERANCE, least_energies_of_many
-from bondcell.models.film.solve import least_energies
+from bondcell.models.film.solve import least_energies, solved
 
 LOADS = ("normal", "shear", "torsion", "bending")
 
@@ -68,7 +68,7 @@ def test_bound_of_the_loss() -> None:
     basis = reduced.Basis(own)
     basis.add(factors[:4])
     value, bound = basis.energies(factors)
-    loss = value - least_energies(own, factors)
+    loss = value - least_energies(own, factors)[0]
     assert np.all(loss <= bound * (1 + 1e-9) + 1e-10 * value)
     assert np.all(loss >= -1e-10 * value)
     assert loss[4:].min() > 1e-6 * value.min()
@@ -80,7 +80,7 @@ def test_one_material_many_times() -> None:
     own = forms(12, seed=3)
     factors = np.broadcast_to([1.0, 20.0, 300.0], (2 * MANY, 3))
     value, bound = least_energies_of_many(own, factors)
-    assert value == pytest.approx(least_energies(own, factors[:1])[0], rel=1e-10)
+    assert value == pytest.approx(least_energies(own, factors[:1])[0][0], rel=1e-10)
     assert np.all(bound <= TOLERANCE)
 
 
@@ -90,8 +90,19 @@ def test_what_no_basis_holds_is_solved(monkeypatch: pytest.MonkeyPatch) -> None:
     own, draw = forms(40, seed=4), np.random.default_rng(5).uniform
     factors = 10 ** draw(-2, 2, (MANY, 3))
     value, bound = least_energies_of_many(own, factors)
-    exact = least_energies(own, factors)
+    exact, ridge = least_energies(own, factors)
     assert np.all(bound <= TOLERANCE)
     assert np.all(value <= exact * (1 + 1.01 * bound + 1e-10))
-    assert np.array_equal(value[bound == 0], exact[bound == 0])
-    assert np.count_nonzero(bound == 0) > MANY / 2
+    alone = bound == ridge
+    assert np.array_equal(value[alone], exact[alone])
+    assert np.count_nonzero(alone) > MANY / 2
+
+
+def test_the_ridge_is_counted() -> None:
+    """Two fields that are all but the same: the ridge raises the energy, by about what is said."""
+    rows = np.random.default_rng(5).normal(size=(4, 12))
+    rows[3] = rows[2] + 1e-6 * rows[3]
+    matrix = rows @ rows.T
+    some, none = solved(matrix.copy(), ridge=1e-13), solved(matrix.copy(), ridge=0.0)
+    assert none.loss == 0.0
+    assert 0 < some.energy / none.energy - 1 < 3 * some.loss < 0.2

@@ -197,7 +197,7 @@ def _open_energies(
     every = np.stack([*stack, bulk])
     for some, solve in (
         (~tight, least_energies_of_many),
-        (tight & (compressibility > 0), _one_by_one),
+        (tight & (compressibility > 0), least_energies),
     ):
         if some.any():
             own_factors = np.stack([*(f[some] for f in factors), 1 / compressibility[some]], axis=1)
@@ -205,7 +205,3 @@ def _open_energies(
             loss[some] = np.where(least < value[some], lost, loss[some])
             value[some] = np.fmin(value[some], least)
     return value, loss
-
-
-def _one_by_one(forms: FloatArray, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
-    return least_energies(forms, factors), np.zeros(factors.shape[0])

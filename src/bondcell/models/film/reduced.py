@@ -161,7 +161,7 @@ def least_energies_of_many(forms: FloatArray, factors: FloatArray) -> tuple[Floa
             before, pending = pending.size, np.concatenate(left)
             if worst.size or pending.size == before:
                 break
-    value[pending] = least_energies(forms, factors[pending])
+    value[pending], error[pending] = least_energies(forms, factors[pending])
     return value, error
 
 

@@ -15,6 +15,9 @@ POINTS = 32
 RIDGE = 1e-13
 """Added to the scaled matrix: fields that nearly repeat each other do no harm."""
 
+RIDGE_SHARE = 5.0
+"""Each decade less of the ridge gives about as much again: this many are counted."""
+
 
 @dataclass(frozen=True)
 class Solved:
@@ -24,6 +27,8 @@ class Solved:
     ----------
     energy
         ``x . A x``.
+    loss
+        What the ridge has to do with it, relative: it holds back fields that nearly repeat others.
     fields
         ``x``, with ``x_0 = 1``, shape (n,).
     factor
@@ -33,6 +38,7 @@ class Solved:
     """
 
     energy: float
+    loss: float
     fields: FloatArray
     factor: FloatArray
     scale: FloatArray
@@ -57,9 +63,10 @@ def solved(matrix: FloatArray, ridge: float = RIDGE) -> Solved:
         # Round-off at extreme ratios of moduli can spoil a tiny eigenvalue's sign.
         inner = matrix[1:, 1:] + ridge * np.eye(column.size)
         factor, found = np.full_like(inner, np.nan), np.linalg.solve(inner, -column)
-    energy = (matrix[0, 0] + (column - ridge * found) @ found) / scale[0] ** 2
+    held = ridge * (found @ found)
+    energy = matrix[0, 0] + column @ found - held
     fields = np.concatenate(([1.0], found * scale[1:] / scale[0]))
-    return Solved(float(energy), fields, factor, scale)
+    return Solved(float(energy / scale[0] ** 2), float(held / energy), fields, factor, scale)
 
 
 def combined(forms: FloatArray, factors: FloatArray) -> FloatArray:
@@ -68,8 +75,8 @@ def combined(forms: FloatArray, factors: FloatArray) -> FloatArray:
     return np.asarray((factors @ forms.reshape(forms.shape[0], -1)).reshape(shape))
 
 
-def least_energies(forms: FloatArray, factors: FloatArray) -> FloatArray:
-    """Least energies of points, one system each.
+def least_energies(forms: FloatArray, factors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Least energies of points, one system each, and what the ridge adds, relative.
 
     Parameters
     ----------
@@ -78,8 +85,9 @@ def least_energies(forms: FloatArray, factors: FloatArray) -> FloatArray:
     factors
         The points' moduli, what each form is multiplied by, shape (points, q).
     """
-    value = np.empty(factors.shape[0])
+    value, loss = np.empty(factors.shape[0]), np.empty(factors.shape[0])
     for first in range(0, value.size, POINTS):
         for k, matrix in enumerate(combined(forms, factors[first : first + POINTS]), first):
-            value[k] = solved(matrix).energy
-    return value
+            found = solved(matrix)
+            value[k], loss[k] = found.energy, RIDGE_SHARE * found.loss
+    return value, loss
