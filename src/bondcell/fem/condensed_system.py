@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import splu
 
 from bondcell.fem.full_system import FullSystem
+from bondcell.fem.symmetric_solve import factored
 
 
 def without_insides(system: FullSystem) -> FullSystem:
@@ -32,12 +32,7 @@ def without_insides(system: FullSystem) -> FullSystem:
     for own in (inside[part == k] for k in np.unique(part)):
         link = csc_array(particles[np.ix_(own, kept)])
         touched = np.flatnonzero(np.diff(link.indptr) > 0)
-        factors = splu(
-            csc_array(particles[np.ix_(own, own)]),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        factors = factored(particles[np.ix_(own, own)])
         columns = link[:, touched].toarray()
         lost = columns.T @ factors.solve(columns)
         at = np.ix_(touched, touched)

@@ -11,10 +11,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from bondcell.cell import FloatArray
 from bondcell.fem.full_system import FullSystem
+from bondcell.fem.symmetric_solve import factored
 from bondcell.fem.threads import one_thread
 from bondcell.fem.time_stepping import operators
 from bondcell.prony.chain import Chain
@@ -70,7 +70,7 @@ def stiffness_at(
     of_lift = soft @ lift
     inside = csc_array((soft + system.particles)[np.ix_(free, free)])
     beyond: NDArray[np.complex128] = np.zeros(lift.size, dtype=complex)
-    beyond[free] = splu(inside).solve(-of_lift[free])
+    beyond[free] = factored(inside, pivoting=0.01).solve(-of_lift[free])
     return complex(lift @ of_lift + of_lift @ beyond) * system.factor
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.linalg.blas import dtrsm
 from scipy.linalg.lapack import dpotrf
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
+from scipy.sparse.linalg import SuperLU, splu
 
 from bondcell.cell import FloatArray
 
@@ -43,15 +43,29 @@ def solve_symmetric(matrix: FloatArray, right: FloatArray) -> FloatArray:
     if len(matrix) <= DENSE_LIMIT:
         return np.asarray(scale[:, None] * np.linalg.solve(scaled, scale[:, None] * right))
     try:
-        factors = splu(
-            csc_array(scaled),
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.1,
-            options={"SymmetricMode": True},
-        )
+        factors = factored(csc_array(scaled), pivoting=0.1)
     except RuntimeError as error:
         raise np.linalg.LinAlgError(str(error)) from error
     return np.asarray(scale[:, None] * factors.solve(scale[:, None] * right))
+
+
+def factored(matrix: csc_array, pivoting: float = 0.0) -> SuperLU:
+    """Factors of a sparse symmetric matrix, rows ordered for little fill.
+
+    Parameters
+    ----------
+    matrix
+        Real and positive definite, or complex and symmetric.
+    pivoting
+        Size of a diagonal entry over the largest of its column from which it is the pivot; a
+        definite matrix needs none other.
+    """
+    return splu(
+        csc_array(matrix),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=pivoting,
+        options={"SymmetricMode": True},
+    )
 
 
 def half_solve(matrix: FloatArray, rows: FloatArray) -> FloatArray:

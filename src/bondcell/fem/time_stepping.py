@@ -11,11 +11,11 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.sparse import csc_array, csr_array
-from scipy.sparse.linalg import splu
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.fem.full_system import FullSystem
+from bondcell.fem.symmetric_solve import factored
 from bondcell.fem.threads import one_thread
 from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
@@ -114,7 +114,7 @@ def _step_through(matrix: Relaxing, system: FullSystem, times: FloatArray) -> Fl
         for share, block, part in zip(shares, blocks, parts, strict=True):
             whole, right = whole + share * block, right + share * part.of_lift
         beyond = np.zeros_like(system.lift)
-        beyond[free] = splu(whole).solve(-right[free])
+        beyond[free] = factored(whole).solve(-right[free])
         return beyond
 
     def reaction(beyond: FloatArray) -> float:

@@ -14,10 +14,10 @@ from functools import cached_property
 
 import numpy as np
 from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from bondcell.cell import FloatArray
 from bondcell.fem.full_system import FullSystem
+from bondcell.fem.symmetric_solve import factored
 from bondcell.prony.chain import Chain
 from bondcell.prony.conventions import Relaxing
 from bondcell.prony.network import Network
@@ -243,12 +243,7 @@ class _Space:
         """
         system, free = self.system, self._free
         soft = min(bulk, STIFF_BULK * shear) if shear > 0 else bulk
-        factors = splu(
-            self._elastic + shear * self._own_shear + soft * self._own_bulk,
-            permc_spec="MMD_AT_PLUS_A",
-            diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )
+        factors = factored(self._elastic + shear * self._own_shear + soft * self._own_bulk)
         root, lift = system.bulk_root, system.lift
         force = shear * (system.shear @ lift) + soft * (root.T @ (root @ lift))
         part = 1 - soft / bulk if bulk > 0 else 0.0
