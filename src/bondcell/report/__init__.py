@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sized
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -121,8 +121,24 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["symbols"] = with_subscripts
-    environment.filters["model_name"] = model_name
+    environment.globals["counted"] = counted
     return environment
+
+
+def counted(things: Mapping[str, Sized]) -> str:
+    """How many there are of each, those that there are.
+
+    Examples
+    --------
+    >>> counted({"figure": [1], "table": [1, 2], "finding": []})
+    '1 figure and 2 tables'
+    """
+    words = [
+        f"{len(those)} {name}{'s' if len(those) > 1 else ''}"
+        for name, those in things.items()
+        if those
+    ]
+    return listed(words)
 
 
 def _models(sections: Iterable[Section]) -> list[dict[str, str]]:

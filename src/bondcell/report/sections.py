@@ -59,6 +59,9 @@ FILES = (
 """Files of a scene that the page links."""
 
 
+FINDINGS = 5
+"""Findings of a scene that are not folded away."""
+
 SPECIMEN_PICTURES = 3
 """Pictures of a specimen that are not folded away."""
 
@@ -113,6 +116,11 @@ class Section:
     is_specimen: bool = False
     provenance: dict[str, str] = field(default_factory=dict)
     cost: Cost = field(default_factory=Cost)
+
+    @property
+    def open_findings(self) -> int:
+        """Findings that are not folded away: the first ones, or all where few are left."""
+        return len(self.findings) if len(self.findings) <= FINDINGS + 2 else FINDINGS
 
     @property
     def open_figures(self) -> int:
