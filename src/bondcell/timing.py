@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from math import nan
 from statistics import median
 from typing import TypeVar
 
@@ -23,7 +24,7 @@ class Timing:
     seconds
         Wall time, median [s].
     seconds_spread
-        Wall time of the slowest run less that of the quickest [s]; 0 of a single run.
+        Wall time of the slowest run less that of the quickest [s]; NaN of a single run.
     seconds_cpu
         Processor time of all threads, median [s].
     """
@@ -41,7 +42,13 @@ class Timing:
         >>> Timing.of([3.0, 1.0, 2.0], [1.0, 1.0, 1.5])
         Timing(seconds=2.0, seconds_spread=2.0, seconds_cpu=1.0)
         """
-        return cls(median(wall), max(wall) - min(wall), median(cpu))
+        spread = max(wall) - min(wall) if len(wall) > 1 else nan
+        return cls(median(wall), spread, median(cpu))
+
+    def plus(self, other: Timing) -> Timing:
+        """The timing of this work after another one, whose spread is not known."""
+        seconds, cpu = self.seconds + other.seconds, self.seconds_cpu + other.seconds_cpu
+        return Timing(seconds, self.seconds_spread, cpu)
 
     def per(self, count: int) -> Timing:
         """The timing of one of `count` alike pieces of the work."""
@@ -57,6 +64,11 @@ ATTRIBUTES = {
     "seconds_cpu": {"units": "s", "long_name": "processor time, median of the runs"},
 }
 """How a file of results describes the fields of a `Timing`."""
+
+
+def timed_once(work: Callable[[], Answer]) -> tuple[Answer, Timing]:
+    """Answer of some work that is too long to be repeated, and what it takes."""
+    return timed(work, 1, quick=0.0)
 
 
 def timed(work: Callable[[], Answer], repeats: int, quick: float = QUICK) -> tuple[Answer, Timing]:

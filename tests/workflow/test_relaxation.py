@@ -78,6 +78,10 @@ def test_file(run):
     assert (study["relaxation"].diff("time") <= 0).all()
     with xr.open_datatree(path) as tree:
         assert set(tree.children) == {"torsion", "relaxation_methods"}
+    methods = read_dataset(path, "relaxation_methods")
+    assert methods.attrs["threads"] == "1"
+    assert float(methods.attrs["load_average_before"]) >= 0
+    assert (methods["seconds_cpu"].where(methods["status"] == 0, 1) > 0).all()
     torsion = read_dataset(path, "torsion")
     assert torsion["relaxation"].attrs["units"] == "N m rad-1"
     assert np.isfinite(torsion["relaxation"].sel(model="fe")).all()

@@ -62,6 +62,19 @@ def test_names_and_dimensions(results):
     assert set(results) == {"", "ladder", "bonds", "relaxation", "finite_strain", "midplane"}
 
 
+def test_times_tell_how_they_were_measured(results):
+    """Lattices are run several times, a solid once; each part says what else was running."""
+    study = results[""]
+    known = study.energy.notnull()
+    assert (study.seconds_cpu > 0).where(known, True).all()
+    is_solid = study.method.isin(["fe_elastic", "fe_rigid"])
+    assert (study.seconds_spread >= 0).where(known & ~is_solid, True).all()
+    assert study.seconds_spread.where(is_solid).isnull().all()
+    threads, loads = (study.attrs[name] for name in ("threads", "load_average_before"))
+    assert set(threads.split(" | ")) == {"1"}
+    assert len(loads.split(" | ")) == len(threads.split(" | "))
+
+
 def test_what_was_not_computed_is_nan_and_flagged(results):
     study = results[""]
     missing = study.sel({"method": "fe_elastic", "walls": "fixed"})

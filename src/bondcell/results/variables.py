@@ -216,6 +216,8 @@ _SPECIMEN = """
     status     | method loading walls |   | outcome, a flag
     dof        | method loading walls | 1 | degrees of freedom
     seconds    | method loading walls | s | wall time of all loadings together, mesh excluded
+    seconds_spread | method loading walls | s | slowest run less the quickest, of lattices
+    seconds_cpu | method loading walls | s | processor time of all loadings together
     displacement | method loading walls particle component | m | of the particle's centre
     rotation   | method loading walls particle | rad | of the particle
     mode_energy | method loading walls mode | J | strain energy by mode of deformation
@@ -237,6 +239,7 @@ _SPECIMEN_GROUPS = {
         level_energy | method loading walls per_gap | J | strain energy on each mesh
         level_dof | method loading walls per_gap | 1 | degrees of freedom of each mesh
         level_seconds | method loading walls per_gap | s | wall time on each mesh, mesh excluded
+        level_seconds_cpu | method loading walls per_gap | s | processor time on each mesh, mesh excluded
         """,
     ),
     "bonds": (

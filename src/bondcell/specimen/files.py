@@ -34,6 +34,10 @@ def collect_specimen(scene: Scene, files: list[Path]) -> tuple[xr.Dataset, dict[
     """
     found = {_part(path): read_batch(path, scene.specimen_digest) for path in files}
     attributes = provenance.collect(scene) | machines(found.values())
+    for name in provenance.measuring():  # of each part, in the order of the jobs
+        attributes[name] = " | ".join(
+            str(part.attrs.get(name, provenance.UNKNOWN)) for part in found.values()
+        )
     plane = found.pop("midplane", None)
     root, groups = combine(found)
     if plane is not None:

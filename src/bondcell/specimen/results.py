@@ -13,7 +13,7 @@ from bondcell.specimen.compare import compare
 from bondcell.specimen.names import METHODS, SOLIDS, WALLS
 from bondcell.status import Status, cf_flag_attributes
 
-LEVELS = ("level_energy", "level_dof", "level_seconds")
+LEVELS = ("level_energy", "level_dof", "level_seconds", "level_seconds_cpu")
 BONDS = ("bond_force", "bond_nodes")
 
 _REFERENCE = {

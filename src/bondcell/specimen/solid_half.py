@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from time import perf_counter
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +14,13 @@ from bondcell.lattice import specimen_geometry as given
 from bondcell.lattice.packing import Packing, packing
 from bondcell.solid.elastic import solve_elastic
 from bondcell.solid.raise_order import raise_order
-from bondcell.solid.rigid import condense
+from bondcell.solid.rigid import Condensed, condense
 from bondcell.solid.sphere_mesh import sphere_mesh
 from bondcell.solid.stiffness import Elastic
 from bondcell.solid.tets import Tets
 from bondcell.specimen.bonds import Material
 from bondcell.specimen.bound import softest
+from bondcell.timing import Timing, timed_once
 
 X, Y, Z = range(3)
 
@@ -49,8 +50,8 @@ class SolidAnswer:
         Displacement (x, y) [m] and rotation [rad] of all particles, shape (cases, 18, 3).
     dof
         Unknowns.
-    seconds
-        Wall time of assembly and solution [s].
+    timing
+        What assembly and solution took, once.
     field
         Displacements of all nodes of the half [m], shape (nodes, 3, cases); elastic particles only.
     softest
@@ -61,7 +62,7 @@ class SolidAnswer:
     energy: FloatArray
     motion: FloatArray
     dof: int
-    seconds: float
+    timing: Timing
     field: FloatArray | None = None
     softest: float = np.nan
 
@@ -96,35 +97,31 @@ def rigid_answer(
     mesh: Tets, material: Material, walls: str, displacements: FloatArray
 ) -> SolidAnswer:
     """Rigid particles; ``displacements`` of particles 1 to 3, shape (cases, 2) [m]."""
-    started = perf_counter()
-    found = condense(mesh, half_specimen(), materials(material)[0], supports(mesh, walls))
     motion = np.zeros((len(displacements), 18, 3))
     energy = np.zeros(len(displacements))
-    for case, displacement in enumerate(displacements):
-        moved, _, half = found.solve(np.array(given.LOADED), displacement)
-        motion[case, found.moving], energy[case] = moved, 2 * half
-    seconds = perf_counter() - started
+
+    def solve() -> Condensed:
+        found = condense(mesh, half_specimen(), materials(material)[0], supports(mesh, walls))
+        for case, displacement in enumerate(displacements):
+            moved, _, half = found.solve(np.array(given.LOADED), displacement)
+            motion[case, found.moving], energy[case] = moved, 2 * half
+        return found
+
+    found, timing = timed_once(solve)
     shifts = np.tile([True, True, False], found.moving.size)
     least = softest(2 * found.stiffness, shifts)
-    return SolidAnswer(energy, motion, found.dof, seconds, softest=least)
+    return SolidAnswer(energy, motion, found.dof, timing, softest=least)
 
 
 def elastic_answer(
     mesh: Tets, material: Material, walls: str, displacements: FloatArray
 ) -> SolidAnswer:
     """Elastic particles; mean ``displacements`` of particles 1 to 3, shape (cases, 2) [m]."""
-    started = perf_counter()
-    found = solve_elastic(
-        mesh,
-        half_specimen(),
-        *materials(material),
-        supports(mesh, walls),
-        np.array(given.LOADED),
-        displacements,
-    )
+    held, loaded = supports(mesh, walls), np.array(given.LOADED)
+    elastic = partial(solve_elastic, mesh, half_specimen(), *materials(material))
+    found, timing = timed_once(lambda: elastic(held, loaded, displacements))
     motion = found.motion.transpose(2, 0, 1)
-    seconds = perf_counter() - started
-    return SolidAnswer(2 * found.energy, motion, found.dof, seconds, field=found.field)
+    return SolidAnswer(2 * found.energy, motion, found.dof, timing, field=found.field)
 
 
 def specimen_mesh(per_gap: float, order: int = 2) -> Tets:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -13,12 +12,15 @@ import xarray as xr
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.lattice import specimen_geometry as given
+from bondcell.lattice.solve import Solution
 from bondcell.models import MODELS
 from bondcell.specimen.bonds import Material
 from bondcell.specimen.full_lattice import LayerEnergies, layer_energies
-from bondcell.specimen.lattice_variants import VARIANTS, specimen_lattice
+from bondcell.specimen.lattice_variants import VARIANTS, SpecimenLattice, specimen_lattice
 from bondcell.specimen.names import LOADINGS, METHODS, SOLIDS, WALLS
 from bondcell.status import Status, cf_flag_attributes
+from bondcell.timing import ATTRIBUTES as TIMES
+from bondcell.timing import Timing, timed, timed_once
 
 Watch = Callable[[str, str, Any, Any], None]
 
@@ -42,10 +44,12 @@ _ATTRIBUTES = {
     "error_estimate": {"units": "1", "long_name": "relative numerical error of the energy"},
     "status": cf_flag_attributes(),
     "dof": {"units": "1", "long_name": "degrees of freedom"},
+    **TIMES,
     "seconds": {"units": "s", "long_name": "wall time of all loadings together, mesh excluded"},
     "level_energy": {"units": "J", "long_name": "strain energy on each mesh of the ladder"},
     "level_dof": {"units": "1", "long_name": "degrees of freedom of each mesh"},
     "level_seconds": {"units": "s", "long_name": "wall time on each mesh, mesh excluded"},
+    "level_seconds_cpu": {"units": "s", "long_name": "processor time on each mesh, mesh excluded"},
     "limit_energy": {"units": "J", "long_name": "strain energy extrapolated over the meshes"},
     "limit_error": {"units": "1", "long_name": "relative uncertainty of that energy"},
 }
@@ -59,6 +63,7 @@ def specimen(
     orders: Sequence[int] = (),
     material: Material | None = None,
     watch: Watch | None = None,
+    repeats: int = 1,
 ) -> xr.Dataset:
     """Displace particles 1 to 3 of the specimen by 0.5 mm, in every asked way.
 
@@ -75,12 +80,15 @@ def specimen(
     watch
         Called as ``watch(method, walls, mesh, answer)`` with each answer of the solid, and as
         ``watch(method, walls, lattice, solutions)`` with a lattice's solutions of all loadings.
+    repeats
+        Timed runs of each lattice; a solid is solved once.
 
     Returns
     -------
     xarray.Dataset
         On ``method``, ``loading``, ``walls``: ``energy``, ``displacement_norm``, ``error_estimate``
-        (relative numerical error of the energy), ``status``, ``dof``, ``seconds``; with
+        (relative numerical error of the energy), ``status``, ``dof``, ``seconds`` (median
+        of the runs), ``seconds_spread`` (NaN of a single run), ``seconds_cpu``; with
         ``particle`` (1 to 18) ``rotation``, with ``component`` as well ``displacement``; with
         ``mode`` ``mode_energy`` of the lattices. Of the solids also ``level_energy``,
         ``level_dof``, ``level_seconds`` on ``per_gap`` and ``order``, ``limit_energy`` and
@@ -105,18 +113,16 @@ def specimen(
     solids = [name for name in methods if name in SOLIDS]
     if solids:
         _add_solids(data, solids, ways, material, watch)
-    started = perf_counter()
-    layers = []
-    if "lattice_full" in methods:
-        layers = [layer_energies(material, size) for size in CELL_SIZES]
-    cell_seconds = perf_counter() - started
+    # The pockets and borders of the full lattice come from cells of their own, solved once for all
+    # walls.
+    sizes = CELL_SIZES if "lattice_full" in methods else ()
+    layers, of_cells = timed_once(lambda: [layer_energies(material, size) for size in sizes])
     for method in methods:
         if method in VARIANTS and VARIANTS[method][0] in (*MODELS, "paper"):
             for wall in walls:
-                _add_lattice(data, method, wall, ways, material, layers, watch)
-    if layers:
-        # Its pockets and borders come from cells of their own, solved once for all walls.
-        data.seconds.loc[{"method": "lattice_full"}] += cell_seconds
+                timing = _add_lattice(data, method, wall, ways, material, layers, repeats, watch)
+                whole = timing.plus(of_cells) if method == "lattice_full" else timing
+                _put_timing(data, {"method": method, "walls": wall}, whole)
     data["displacement_norm"] = np.sqrt(
         (data.displacement**2).sum(("particle", "component"), skipna=False)
     )
@@ -162,10 +168,12 @@ def _empty(
     }
     sizes = {name: len(v[1]) if isinstance(v, tuple) else len(v) for name, v in coords.items()}
     more = {
-        "energy": (), "error_estimate": (), "seconds": (), "limit_energy": (), "limit_error": (),
+        "energy": (), "error_estimate": (), "limit_energy": (), "limit_error": (),
+        **dict.fromkeys(TIMES, ()),
         "rotation": ("particle",), "displacement": ("particle", "component"),
         "mode_energy": ("mode",), "level_energy": ("per_gap", "order"),
-        "level_seconds": ("per_gap", "order"), "level_dof": ("per_gap", "order"),
+        "level_seconds": ("per_gap", "order"), "level_seconds_cpu": ("per_gap", "order"),
+        "level_dof": ("per_gap", "order"),
     }  # fmt: skip
     data = xr.Dataset(coords=coords)
     for name, dims in more.items():
@@ -198,7 +206,8 @@ def _add_solids(
                 here = {**at, "per_gap": size, "order": order}
                 data.level_energy.loc[here] = answer.energy
                 data.level_dof.loc[here] = answer.dof
-                data.level_seconds.loc[here] = answer.seconds
+                data.level_seconds.loc[here] = answer.timing.seconds
+                data.level_seconds_cpu.loc[here] = answer.timing.seconds_cpu
                 if answer.energy.mean() >= lowest:
                     continue
                 if watch:
@@ -206,7 +215,8 @@ def _add_solids(
                 data.energy.loc[at] = answer.energy
                 data.displacement.loc[at] = answer.motion[..., :2]
                 data.rotation.loc[at] = answer.motion[..., 2]
-                data.dof.loc[at], data.seconds.loc[at] = answer.dof, answer.seconds
+                data.dof.loc[at] = answer.dof
+                _put_timing(data, at, answer.timing)
                 data.status.loc[at] = Status.ok
     for method in solids:
         _add_limits(data, method)
@@ -236,16 +246,19 @@ def _add_lattice(
     ways: FloatArray,
     material: Material,
     layers: list[LayerEnergies],
+    repeats: int,
     watch: Watch | None,
-) -> None:
-    """One lattice under all loadings."""
-    started = perf_counter()
-    every = [
-        specimen_lattice(method, material, wall, layer)
-        for layer in (layers if method == "lattice_full" else [None])
-    ]
-    answers = [[own.solve(way) for way in ways] for own in every]
-    seconds = perf_counter() - started
+) -> Timing:
+    """One lattice under all loadings, and what it took."""
+
+    def solve() -> tuple[list[SpecimenLattice], list[list[Solution]]]:
+        every = [
+            specimen_lattice(method, material, wall, layer)
+            for layer in (layers if method == "lattice_full" else [None])
+        ]
+        return every, [[own.solve(way) for way in ways] for own in every]
+
+    (every, answers), timing = timed(solve, repeats) if repeats > 1 else timed_once(solve)
     if watch:
         watch(method, wall, every[0], answers[0])
     for loading, found in zip(data.loading.values.tolist(), answers[0], strict=True):
@@ -256,9 +269,15 @@ def _add_lattice(
             data.rotation.loc[at] = found.motion[:18, 2]
         for mode, energy in found.energies.items():
             data.mode_energy.loc[{**at, "mode": mode}] = energy
-        data.dof.loc[at], data.seconds.loc[at] = found.dof, seconds
+        data.dof.loc[at] = found.dof
         data.status.loc[at] = Status.ok
         data.error_estimate.loc[at] = 1e-12 if VARIANTS[method][0] != "fe" else 1e-6
     if len(answers) > 1:
         fine, coarse = (np.array([found.energy for found in own]) for own in answers)
         data.error_estimate.loc[{"method": method, "walls": wall}] = abs(coarse / fine - 1)
+    return timing
+
+
+def _put_timing(data: xr.Dataset, at: dict[str, str], timing: Timing) -> None:
+    for name in TIMES:
+        data[name].loc[at] = getattr(timing, name)
