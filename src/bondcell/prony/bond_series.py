@@ -25,6 +25,9 @@ SAMPLED_FACTOR, DEEPEST = 3.0, 1e-6
 """Error of K(t) over that of a fit in the modulus and the share of the modulus that is left, see
 tests/unit/test_relaxation.py, and the share from where on it grows no more."""
 
+OWN_FACTOR = 2.0
+"""Error of K(t) over the largest that the model has at any modulus passed, see the same."""
+
 
 def bond_series(
     model: Model, load: str, matrix: Relaxing, **options: Any
@@ -45,7 +48,7 @@ def bond_series(
     Chain
         Shape (points,) [N/m, or N m/rad]; NaN where the model has no value.
     ndarray
-        Relative numerical error of K(t), that of the model's own evaluation not counted.
+        Relative numerical error of K(t); of a fitted series with the model's own at all moduli.
     """
     if load == "normal" and model.name in BANKS:
         return _exact(model.name, matrix, options)
@@ -137,14 +140,14 @@ def _fitted(
     end = decade_below(float(matrix.prony.shear.equilibrium))
     state = np.concatenate([*matrix.cell.as_dict().values()]).tobytes()
     asked = _Asked(formula, state, matrix.convention, end, tuple(options.items()), matrix)
-    bank, error = _fit(asked)
+    bank, error, own = _fit(asked)
     series = bank.relaxation(matrix.prony.shear, modulus, np.zeros(modulus.shape))
     missing = np.isnan(error)
     series.equilibrium[missing] = np.nan
     series.strengths[missing] = np.nan
     # In time a fit misses by the stiffness at t = 0, in relation to what is left of it later.
     left = max(float(matrix.prony.shear.equilibrium), DEEPEST)
-    return series, SAMPLED_FACTOR / left * error
+    return series, SAMPLED_FACTOR / left * error + OWN_FACTOR * own
 
 
 @dataclass(frozen=True)
@@ -160,15 +163,22 @@ class _Asked:
 
 
 @lru_cache(maxsize=8)
-def _fit(asked: _Asked) -> tuple[Bank, FloatArray]:
+def _fit(asked: _Asked) -> tuple[Bank, FloatArray, FloatArray]:
+    """The bank, what it misses of the values, and the model's own largest error among them."""
     matrix, options = asked.matrix, dict(asked.options)
+    own = np.zeros(matrix.cell.shape)
 
     def values(shares: FloatArray) -> FloatArray:
-        return np.array([_value(asked.formula, matrix.at(float(x)), options) for x in shares])
+        found = []
+        for share in shares:
+            springs = _springs(asked.formula, matrix.at(float(share)), options)
+            np.fmax(own, springs.relative_error, out=own)
+            found.append(np.asarray(springs.stiffness))
+        return np.array(found)
 
-    return sampled_bank(values, matrix.shear, asked.end)
+    return *sampled_bank(values, matrix.shear, asked.end), own
 
 
-def _value(formula: Callable[..., Any], cell: Cell, options: dict[str, Any]) -> FloatArray:
+def _springs(formula: Callable[..., Any], cell: Cell, options: dict[str, Any]) -> Any:
     with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
-        return np.asarray(formula(cell, **options).stiffness)
+        return formula(cell, **options)
