@@ -28,6 +28,14 @@ EXPLANATION = (
 )
 
 
+EXAMPLES = """
+
+example:
+  bondcell advise --radius "7.5 mm" --gap "0.5 mm" --young-particle "30 GPa" \\
+      --poisson-particle 0.25 --young-matrix "1.4 MPa" --poisson-matrix 0.46 --error "1 %"
+"""
+
+
 def add_to(commands: Any) -> None:
     """Add the subcommand and its options."""
     from bondcell.cli.cell_options import add_cell_options
@@ -37,7 +45,7 @@ def add_to(commands: Any) -> None:
         help="which model to take for a cell and a wanted error",
         description="The cheapest model that is good enough for a bond cell, and why not the "
         "paper's.",
-        epilog=EXPLANATION,
+        epilog=EXPLANATION + EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )

@@ -33,6 +33,17 @@ EXPLANATION = (
     "model.\nHow far an analytic model is from the real cell is seen by comparing it with fe."
 )
 
+EXAMPLES = """
+
+examples:
+  bondcell stiffness --radius "7.5 mm" --gap "0.5 mm" --young-particle "30 GPa" \\
+      --poisson-particle 0.25 --young-matrix "1.4 MPa" --poisson-matrix "46 %" \\
+      --model fsi --model fe
+  bondcell stiffness --radius "7.5 mm" --radius-j "5 mm" --gap "10 um" --young-particle rigid \\
+      --poisson-particle 0.25 --young-matrix "1.4 MPa" --poisson-matrix 0.46 --load shear \\
+      --model film --json
+"""
+
 Commands = Any
 """The object that argparse gives for subcommands; its type is private."""
 
@@ -45,7 +56,7 @@ def add_to(commands: Commands) -> None:
         "stiffness",
         help="stiffness of one bond cell by one or more models",
         description="Stiffness of one bond cell: a line for each model.",
-        epilog=EXPLANATION,
+        epilog=EXPLANATION + EXAMPLES,
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
     )
