@@ -69,7 +69,7 @@ def draw_finite_strain(group: xr.Dataset) -> Drawing:
     axes.axhline(0, color=BLACK, linewidth=0.8)
     for level in (-3, 3):
         axes.axhline(level, color=BLACK, linewidth=0.8, linestyle=":")
-    axes.set_xticks(range(len(directions)), directions)
+    axes.set_xticks(range(len(directions)), [name.replace("-", "−") for name in directions])
     axes.set_ylabel("energy beside linear theory [%]")
     axes.grid(visible=False, axis="x")
     figure.legend(loc="outside upper center", ncols=3)
