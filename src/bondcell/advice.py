@@ -194,7 +194,7 @@ def _cell(study: Mapping[str, Any]) -> Cell:
         return cell_from_study(study)[0]  # type: ignore[arg-type]
     try:
         given = {str(name): study[name] for name in study}
-    except TypeError:
+    except (TypeError, LookupError):
         allowed = "a mapping of inputs, or an xarray.Dataset"
         raise InputError([Violation("study", type(study).__name__, allowed)]) from None
     return Cell.from_values(**given)
@@ -207,6 +207,8 @@ def _check(cell: Cell, error: float, load: str, measure: bool) -> None:
     is_number = isinstance(error, int | float | np.number) and not isinstance(error, bool)
     if not (is_number and ERRORS[0] <= error <= ERRORS[1]):
         violations.append(Violation("error", error, ERROR_RANGE))
+    if measure not in (True, False):
+        violations.append(Violation("measure", measure, "True or False"))
     cells = cell.ravel().gap.size
     if measure and cells > MOST_MEASURED:
         allowed = f"at most {MOST_MEASURED} cells to be solved by finite elements"

@@ -218,3 +218,14 @@ def test_shipped_map_is_small_and_says_where_it_comes_from():
     assert found.about["reference_error"] <= 2e-6
     assert set(found.codes) == {"normal", "shear", "torsion", "bending"}
     assert "fsi" in found.codes["normal"]
+
+
+@pytest.mark.parametrize("study", [[1, 2], "gap", None, 3.0])
+def test_a_study_is_a_mapping(study):
+    with pytest.raises(bondcell.InputError, match=r"study = .*a mapping of inputs"):
+        bondcell.advise(study)
+
+
+def test_measure_is_yes_or_no():
+    with pytest.raises(bondcell.InputError, match="measure = 'yes': allowed is True or False"):
+        bondcell.advise(BASE, measure="yes")

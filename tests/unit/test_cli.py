@@ -333,3 +333,16 @@ s.run = lambda _: (print('running', flush=True), time.sleep(60)); import sys; sy
     _, err = running.communicate(timeout=30)
     assert running.returncode == 130
     assert err == "bondcell: interrupted\n"
+
+
+def test_a_model_out_of_its_range_says_where_it_holds(capsys):
+    words = stiffness("--model", "surrogate", "--model", "film", radius_j="5 mm")
+    assert main(words) == 1
+    out = capsys.readouterr().out
+    assert f"surrogate is not_computed. It holds for: {MODELS['surrogate'].valid_range}" in out
+    assert "film is" not in out
+
+
+def test_the_surrogate_states_its_error_to_the_finite_elements(capsys):
+    assert main(stiffness("--model", "surrogate", "--load", "bending")) == 0
+    assert "(to the finite elements)" in capsys.readouterr().out

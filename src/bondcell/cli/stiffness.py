@@ -182,7 +182,22 @@ def _print_table(cell: Cell, answers: list[Answer], load: str, options: dict[str
         if math.isfinite(found.coupling):
             rows.append(["  coupling", f"{found.coupling:.{DIGITS}g} N/rad", "", "", ""])
     print(text_table(rows, ["model", "stiffness", "relative error estimate", "status", "time"]))
+    for line in _out_of_range(answers):
+        print(f"\n{line}")
     print(f"\n{EXPLANATION}")
+
+
+def _out_of_range(answers: list[Answer]) -> list[str]:
+    """Where the models hold that are flagged because the cell lies elsewhere."""
+    from bondcell.models import MODELS
+    from bondcell.status import Status
+
+    flagged = (Status.outside_valid_range, Status.not_computed)
+    return [
+        f"{found.model} is {found.status.name}. It holds for: {MODELS[found.model].valid_range}"
+        for found in answers
+        if found.status in flagged
+    ]
 
 
 def _document(
