@@ -71,8 +71,8 @@ def allowed(script, scene):
         "collect": series | SPECIMEN_TOO,
         "bond_series": {"prony"},
         "figures": {"matplotlib", *series, *SPECIMEN_TOO},
-        "specimen_vtk": {"lattice"},
-        "specimen_field_vtk": set(),
+        "specimen_vtk": {"lattice", "solid", "fem"},  # to mesh nothing, but to write elements
+        "specimen_field_vtk": {"lattice", "solid", "fem"},
     }.get(script, set())
 
 

@@ -183,7 +183,7 @@ def extrapolate_orders(values: FloatArray) -> tuple[FloatArray, FloatArray]:
 
     Examples
     --------
-    >>> limit, error = extrapolate_orders(np.array([1.11, 1.01, 1.001]))
+    >>> limit, error = extrapolate_orders(np.array([1.1, 1.01, 1.001]))
     >>> round(float(limit), 6), round(float(error), 6)
     (1.0, 0.001)
     """
