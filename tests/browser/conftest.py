@@ -175,6 +175,9 @@ def _specimen(scene: Scene, folder: Path) -> None:
     draw_specimen(read_specimen(folder / "study.nc"), folder / "figures")
 
 
+PATIENCE = 120_000
+"""Milliseconds that a busy machine may take for anything."""
+
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = (
     "--disable-gpu",
@@ -229,6 +232,7 @@ class Visit:
     def __init__(self, browser, path: Path, width: int, **options) -> None:
         height = 900 if width > 600 else 844
         self.page = browser.new_page(viewport={"width": width, "height": height}, **options)
+        self.page.set_default_timeout(PATIENCE)
         self.said: list[str] = []
         self.requests: list[str] = []
         self.page.on("console", lambda message: self.said.append(message.text))

@@ -17,6 +17,11 @@ def lines(page, figure: str, colour: str | None = None) -> list[str]:
     )
 
 
+def settle(page) -> None:
+    """Wait until no figure is being drawn."""
+    page.wait_for_function("!document.querySelector('.interactive[data-state=drawing]')")
+
+
 def texts(page, selector: str) -> list[str]:
     return page.eval_on_selector_all(selector, "all => all.map((each) => each.textContent)")
 
@@ -88,14 +93,14 @@ def test_sliders_move_the_curves(fresh):
     assert said.text_content() == "0.46"
     slider.focus()
     fresh.keyboard.press("ArrowLeft")
-    fresh.wait_for_timeout(100)
+    settle(fresh)
     assert said.text_content() == "0"
     assert slider.get_attribute("aria-valuetext") == "0"
     after = lines(fresh, SWEEP, FSI)
     assert len(after) == 1
     assert after != before
     fresh.keyboard.press("ArrowRight")
-    fresh.wait_for_timeout(100)
+    settle(fresh)
     assert lines(fresh, SWEEP, FSI) == before
 
 
@@ -106,7 +111,7 @@ def test_every_slider_of_every_figure_does_something(fresh):
         before = fresh.locator(place).last.inner_html()
         at = slider.input_value()
         slider.fill("0" if at != "0" else "1")
-        fresh.wait_for_timeout(100)
+        settle(fresh)
         assert fresh.locator(place).last.inner_html() != before, slider.get_attribute("id")
         slider.fill(at)
 
@@ -116,14 +121,14 @@ def test_switches_hide_curves(fresh):
     others = len(lines(fresh, SWEEP))
     box.focus()
     fresh.keyboard.press("Space")
-    fresh.wait_for_timeout(100)
+    settle(fresh)
     assert lines(fresh, SWEEP, FSI) == []
     assert len(lines(fresh, SWEEP)) == others - 1
     fresh.click(f"{SWEEP} [data-all=off]")
-    fresh.wait_for_timeout(100)
+    settle(fresh)
     assert lines(fresh, SWEEP) == []
     fresh.click(f"{SWEEP} [data-all=on]")
-    fresh.wait_for_timeout(100)
+    settle(fresh)
     assert len(lines(fresh, SWEEP)) == others
 
 
@@ -131,17 +136,17 @@ def test_menus_choose_what_is_drawn(fresh):
     titles = f"{CHIEF} .plot .role-axis-title text"
     assert any("modulus ratio" in text for text in texts(fresh, titles))
     fresh.select_option(f"{CHIEF} [data-control=across]", label="relative gap Lg/Rᵢ")
-    fresh.wait_for_timeout(300)
+    settle(fresh)
     assert any("relative gap" in text for text in texts(fresh, titles))
     assert fresh.locator(f"{CHIEF} [data-control=gap_ratio]").is_disabled()
     assert fresh.locator(f"{CHIEF} [data-control=modulus_ratio]").is_enabled()
     normal = lines(fresh, CHIEF, FILM)
     fresh.select_option(f"{CHIEF} [data-control=load]", label="torsion")
-    fresh.wait_for_timeout(300)
+    settle(fresh)
     assert lines(fresh, CHIEF, FILM) != normal
     assert lines(fresh, CHIEF, FSI) == []  # it knows no torsion
     fresh.select_option(f"{CHIEF} [data-control=upward]", index=2)
-    fresh.wait_for_timeout(300)
+    settle(fresh)
     assert any("stiffness K [N/m or N m/rad]" in text for text in texts(fresh, titles))
 
 
@@ -149,11 +154,11 @@ def test_logarithms_can_be_switched_off(fresh):
     labels = f"{SWEEP} .plot .role-axis-label text"
     before = texts(fresh, labels)
     fresh.uncheck(f"{SWEEP} [data-control=log_x]")
-    fresh.wait_for_timeout(300)
+    settle(fresh)
     assert texts(fresh, labels) != before
     # Poisson's ratio begins at zero: no logarithm is offered.
     fresh.select_option(f"{SWEEP} [data-control=across]", index=2)
-    fresh.wait_for_timeout(300)
+    settle(fresh)
     assert fresh.locator(f"{SWEEP} [data-control=log_x]").is_disabled()
 
 
@@ -180,7 +185,7 @@ def test_points_of_a_design_lie_over_any_of_their_parameters(fresh):
     for label in ("modulus ratio", "Poisson's ratio of the matrix", "gap"):
         option = fresh.locator(f"{menu} option", has_text=label).first.text_content()
         fresh.select_option(menu, label=option)
-        fresh.wait_for_timeout(300)
+        settle(fresh)
         titles = texts(fresh, f"{figure} .plot .role-axis-title text")
         assert any(label in title for title in titles)
     assert fresh.locator(marks).evaluate_all(places) != before

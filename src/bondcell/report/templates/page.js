@@ -78,7 +78,24 @@
       return { signals, patches };
     }
 
+    // Draws what the inputs ask for, one request after the other; meanwhile the holder says so.
     async follow() {
+      this.holder.dataset.state = "drawing";
+      this.asked = true;
+      if (this.busy) return;
+      this.busy = true;
+      try {
+        while (this.asked) {
+          this.asked = false;
+          await this.show();
+        }
+        this.holder.dataset.state = "drawn";
+      } finally {
+        this.busy = false;
+      }
+    }
+
+    async show() {
       const { signals, patches } = this.wanted();
       const key = JSON.stringify(patches);
       if (this.view && key === this.key) {
@@ -105,7 +122,6 @@
   async function draw(holder) {
     try {
       await new Figure(holder).follow();
-      holder.dataset.state = "drawn";
     } catch (error) {
       holder.dataset.state = "failed";
       holder.querySelector(".plot").textContent = `This figure cannot be drawn here: ${error}`;
