@@ -54,7 +54,7 @@ CASES = [
     ("constant_bulk", "normal", "clamped", {"radius_j": 4e-3, "young_j": 1e9}),
     ("constant_bulk", "torsion", "roller", {}),
     ("constant_bulk", "shear", "roller", {}),
-    ("constant_bulk", "bending", "roller", {}),
+    pytest.param("constant_bulk", "bending", "roller", {}, marks=pytest.mark.slow),
     ("constant_bulk", "normal", "roller", {"young_i": np.inf}),
 ]
 

@@ -100,9 +100,15 @@ def test_network_with_many_terms():
 
 CASES = [
     (ABAQUS, "normal", "roller", {}),
-    (ANSYS, "normal", "clamped", {"radius_j": 4e-3, "young_j": 1e9}),
+    pytest.param(
+        ANSYS,
+        "normal",
+        "clamped",
+        {"radius_j": 4e-3, "young_j": 1e9},
+        marks=pytest.mark.slow,
+    ),
     (ANSYS, "normal", "confined", {"poisson_m": 0.3}),
-    (ANSYS, "bending", "roller", {}),
+    pytest.param(ANSYS, "bending", "roller", {}, marks=pytest.mark.slow),
     (ABAQUS, "normal", "roller", {"young_i": np.inf, "gap": 5e-5, "poisson_m": 0.499}),
 ]
 
