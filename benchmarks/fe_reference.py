@@ -264,6 +264,7 @@ def print_table(rows: list[Row]) -> None:
 def draw(rows: list[Row], path: Path) -> None:
     """Cost against the number of points and against the unknowns."""
     from matplotlib.figure import Figure
+    from matplotlib.ticker import NullFormatter
 
     figure = Figure(figsize=(9, 4), layout="constrained")
     left, right = figure.subplots(1, 2)
@@ -272,10 +273,18 @@ def draw(rows: list[Row], path: Path) -> None:
             chosen = [row for row in rows if row.task == task and row.method.startswith(code)]
             if chosen:
                 values = [getattr(row, x) for row in chosen]
-                axes.loglog(values, [row.wall for row in chosen], "o-", label=code)
-        axes.set(xlabel="points" if x == "points" else "unknowns", ylabel="wall time [s]")
-        axes.grid(alpha=0.3)
-    right.legend()
+                axes.loglog(values, [row.cpu for row in chosen], "o-", label=code)
+                if x == "dof":
+                    for value, row in zip(values, chosen, strict=True):
+                        axes.annotate(f"  {row.error:.0e}", (value, row.cpu), fontsize="small")
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_minor_formatter(NullFormatter())
+        axes.set(xlabel="points" if x == "points" else "unknowns", ylabel="processor time [s]")
+        axes.grid(alpha=0.3, which="both")
+    left.set_title("sweeps of one geometry")
+    right.set_title("one point, by order, with its error")
+    right.margins(x=0.2)
+    left.legend()
     figure.savefig(path)
 
 
