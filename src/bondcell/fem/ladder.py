@@ -41,6 +41,10 @@ ROUND_OFF = 1e-11
 THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
 """Bounds of it where ``kappa/mu`` is large: at a gap of one radius, and in the thinnest films."""
 
+HELD_ROUND_OFF, HELD_WORST = 2e-8, 3e-6
+"""The same, to be added where the side is held, over the particles' modulus ratio: all volume has
+to go into them, and the stiffness is theirs."""
+
 FREE_SHARE = 0.1
 """Part of these bounds that cells with free sides reach."""
 
@@ -206,6 +210,10 @@ def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArr
     poisson = np.max([materials.poisson_i, materials.poisson_j, materials.poisson_m], axis=0)
     thinness = max(geometry.radius_i, geometry.radius_j) / geometry.gap
     largest = np.clip(THIN_ROUND_OFF * np.sqrt(thinness), ROUND_OFF, WORST_ROUND_OFF)
+    if load.whole.held.get("lateral"):
+        with np.errstate(divide="ignore"):
+            softness = HELD_ROUND_OFF / materials.ratios.min(axis=1)
+        largest = np.minimum(largest + softness * np.sqrt(thinness), HELD_WORST)
     with np.errstate(divide="ignore"):
         bulk_to_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson))
     return np.maximum(share * np.minimum(2 * ROUND_OFF * bulk_to_shear, largest), ROUND_OFF)
