@@ -224,6 +224,7 @@ _SPECIMEN = """
     displacement_norm | method loading walls | m | root of the sum of squared displacements
     softest    | method walls | N m-1 | smallest 2 U / n^2 of any displacement of norm n
     limit_energy | method loading walls | J | extrapolated over the meshes
+    limit_error | method loading walls | 1 | relative uncertainty of that energy
     reference_energy | loading walls | J | best known energy of the solid
     reference_error | loading walls | 1 | relative uncertainty of that energy
     energy_ratio | method loading walls | 1 | energy over the best known one
@@ -234,12 +235,12 @@ _SPECIMEN = """
 
 _SPECIMEN_GROUPS = {
     "ladder": (
-        ("method", "loading", "walls", "per_gap"),
+        ("method", "loading", "walls", "per_gap", "order"),
         """
-        level_energy | method loading walls per_gap | J | strain energy on each mesh
-        level_dof | method loading walls per_gap | 1 | degrees of freedom of each mesh
-        level_seconds | method loading walls per_gap | s | wall time on each mesh, mesh excluded
-        level_seconds_cpu | method loading walls per_gap | s | processor time on each mesh, mesh excluded
+        level_energy | method loading walls per_gap order | J | strain energy on each mesh
+        level_dof | method loading walls per_gap order | 1 | degrees of freedom of each mesh
+        level_seconds | method loading walls per_gap order | s | wall time on each mesh, mesh excluded
+        level_seconds_cpu | method loading walls per_gap order | s | processor time on each mesh, mesh excluded
         """,
     ),
     "bonds": (

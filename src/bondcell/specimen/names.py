@@ -36,6 +36,7 @@ AXES = {
     "component": {"long_name": "component of a vector"},
     "mode": {"long_name": "part of a lattice's energy"},
     "per_gap": {"units": "1", "long_name": "element size per gap"},
+    "order": {"units": "1", "long_name": "order of the displacements"},
     "force": {"long_name": "part of a bond's force: forces in N, the moment in N m"},
     "direction": {"long_name": "direction of the displacement at finite strain"},
     "end": {"long_name": "which of two"},
