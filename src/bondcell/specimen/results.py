@@ -55,7 +55,9 @@ def combine(parts: Mapping[str, xr.Dataset]) -> tuple[xr.Dataset, dict[str, xr.D
     if ladder:
         groups["ladder"] = data[ladder]
     groups["bonds"] = parts["lattices"][list(BONDS)]
-    root = data.drop_vars([*ladder, *(name for name in data.coords if name == "per_gap")])
+    root = data.drop_vars(
+        [*ladder, *(name for name in data.coords if name in ("per_gap", "order"))]
+    )
     return root, {name: _aligned(group, root) for name, group in groups.items()}
 
 
