@@ -319,7 +319,9 @@ def test_reader_that_goes_away():
 
 
 def test_interrupt():
-    code = "import bondcell.cli as cli, bondcell.cli.stiffness as s, time; \
+    # A shell that runs its commands in the background lets them ignore interrupts.
+    code = "import bondcell.cli as cli, bondcell.cli.stiffness as s, signal, time; \
+signal.signal(signal.SIGINT, signal.default_int_handler); \
 s.run = lambda _: (print('running', flush=True), time.sleep(60)); import sys; sys.exit(cli.main())"
     running = subprocess.Popen(
         [sys.executable, "-c", code, *stiffness()],

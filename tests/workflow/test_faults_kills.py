@@ -1,5 +1,6 @@
 """Killed jobs, a killed Snakemake, two at once, clocks that jump: the next run ends it all well."""
 
+import contextlib
 import os
 import random
 import shutil
@@ -70,6 +71,15 @@ class Run:
             time.sleep(0.02)
         raise AssertionError(self.log.read_text())
 
+    def stop_a_job(self):
+        """A job's process, halted, so that the run cannot end."""
+        while True:
+            job = self.wait_for_job()
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(job, signal.SIGSTOP)
+                if job in self.jobs():
+                    return job
+
     def end(self):
         """Wait for its end: exit status and output."""
         return self.process.wait(timeout=300), self.log.read_text()
@@ -101,13 +111,12 @@ def test_second_run_at_once_is_refused_and_a_killed_one_is_resumed(some):
     workspace, before = some
     forget(workspace)
     first = Run(workspace, STUDY)
-    job = first.wait_for_job()
+    job = first.stop_a_job()
     second = workspace.snakemake(STUDY)
     assert second.returncode == 1
     assert "Directory cannot be locked" in second.stdout
     assert "--unlock" in second.stdout
-    if job in first.jobs():
-        os.kill(job, signal.SIGKILL)
+    os.kill(job, signal.SIGKILL)
     first.process.kill()
     first.end()
     assert workspace.snakemake("--unlock").returncode == 0
