@@ -177,3 +177,17 @@ def test_extremes_are_right_or_flagged() -> None:
     assert np.all(springs.stiffness >= lower * (1 - 2e-4))
     good = np.broadcast_to((cell.gap > 1e-5) & (cell.young_i >= 1), cell.shape)
     assert np.array_equal(status == Status.ok, good)
+
+
+@pytest.mark.parametrize(
+    ("name", "load"),
+    [("film", "normal"), ("film", "torsion"), ("film", "shear"), ("film", "bending"),
+     ("bounds", "normal"), ("bounds", "torsion")],
+)  # fmt: skip
+def test_gaps_too_small_for_any_computer_are_flagged(name: str, load: str) -> None:
+    """The points of a plane's quadrature grow with the gap's logarithm squared."""
+    cell = cells(gap=[1e-2, 1e-17, 1e-300, 1e-1], young_i=1e4, poisson_m=0.4)
+    springs, status = ask(MODELS[name], load, cell)
+    assert status.tolist() == [Status.ok, Status.not_computed, Status.not_computed, Status.ok]
+    alone, _ = ask(MODELS[name], load, cell.ravel().take(np.array([0, 3])))
+    np.testing.assert_allclose(springs.stiffness[[0, 3]], alone.stiffness, rtol=1e-12)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from bondcell.cell import Cell, FloatArray
 from bondcell.models.film.domain import Geometry, panel_count
+from bondcell.models.film.ranges import FINEST_GAP
 from bondcell.models.film.reduced import least_energies_of_many
 from bondcell.models.film.solve import least_energies
 
@@ -115,9 +116,17 @@ def minimum(
     Returns
     -------
     tuple of ndarray
-        Energies, and how much higher they may be than the least over all fields, relative.
+        Energies, and how much higher they may be than the least over all fields, relative; NaN
+        for gaps below `ranges.FINEST_GAP`.
     """
     scale = np.maximum(cell.radius_i, cell.radius_j)
+    fine = gap * scale >= FINEST_GAP * np.minimum(cell.radius_i, cell.radius_j)
+    if not fine.all():
+        value, loss = np.full((2, *gap.shape), np.nan)
+        if fine.any():
+            rest = cell.take(np.flatnonzero(fine))
+            value[fine], loss[fine] = minimum(rest, gap[fine], assemble, solve, mirrors, batch)
+        return value, loss
     key = _keys(cell, scale, gap)
     key[0] *= mirrors
     own, place = np.unique(key, axis=1, return_inverse=True)

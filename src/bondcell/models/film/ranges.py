@@ -13,6 +13,9 @@ LONGEST = 3.0
 SMALLEST_GAP = 1e-5
 """L_g / min(R_i, R_j) down to which the fields resolve the film."""
 
+FINEST_GAP = 1e-16
+"""The same below which nothing is computed: points grow with the square of the gap's logarithm."""
+
 WIDEST = 3.0
 """R_c / max(R_i, R_j) up to which the fields were checked."""
 
