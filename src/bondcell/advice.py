@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -235,14 +236,16 @@ def _measured(shipped: AccuracyMap, cell: Cell, load: str) -> list[Candidate]:
     from bondcell.fem.reference import solve
 
     flat = cell.ravel()
-    truth = solve_points(flat, solve, load=load).stiffness
+    solved = solve_points(flat, solve, load=load)
+    truth = solved.stiffness
     found = []
     for name in shipped.codes[load]:
         error = ask(MODELS[name], load, flat)[0].stiffness / truth - 1
         bounds = float(np.abs(error).max()), float(error.min()), float(error.max())
         seconds = shipped.seconds(load, name, truth.size)
         found.append(_candidate(name, load, cell, bounds, seconds))
-    reference = _reference(shipped, load, truth.size)
+    own = float(np.fmax(DEFAULT_TOLERANCE, np.max(solved.error_estimate)))
+    reference = _reference(shipped, load, truth.size, math.nan if np.isnan(truth).any() else own)
     return sorted([*found, reference], key=lambda candidate: candidate.seconds)
 
 
@@ -257,8 +260,9 @@ def _candidate(
     return Candidate(name, *bounds, seconds, holds, _is_formula(name))
 
 
-def _reference(shipped: AccuracyMap, load: str, count: int) -> Candidate:
-    error = DEFAULT_TOLERANCE
+def _reference(
+    shipped: AccuracyMap, load: str, count: int, error: float = DEFAULT_TOLERANCE
+) -> Candidate:
     seconds = shipped.seconds(load, REFERENCE, count)
     return Candidate(REFERENCE, error, -error, error, seconds, True, False)
 

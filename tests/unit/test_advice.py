@@ -2,6 +2,7 @@
 
 import json
 import math
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -224,6 +225,30 @@ def test_shipped_map_is_small_and_says_where_it_comes_from():
 def test_a_study_is_a_mapping(study):
     with pytest.raises(bondcell.InputError, match=r"study = .*a mapping of inputs"):
         bondcell.advise(study)
+
+
+def test_measured_reference_is_as_good_as_it_says(monkeypatch):
+    module = import_module("bondcell.by_geometry")
+    real = module.solve_points
+
+    def coarse(*arguments, **more):
+        found = real(*arguments, **more)
+        found.error_estimate[:] = estimate
+        found.stiffness[:] += 0 * estimate
+        return found
+
+    monkeypatch.setattr(module, "solve_points", coarse)
+    soft = BASE | {"young_i": 1e6}
+    for estimate, said in ((1e-9, "measured 1e-4 %"), (0.03, "measured 3 %")):
+        advice = bondcell.advise(soft, error=1e-5, measure=True)
+        assert advice.model == "fe"
+        assert said in str(advice)
+        assert advice.candidates[-1].serves(1e-5) == (estimate < 1e-5)
+        assert ("No model is known to stay within" in str(advice)) == (estimate > 1e-5)
+    estimate = np.nan
+    advice = bondcell.advise(soft, error=0.5, measure=True)
+    assert math.isnan(advice.expected_error)
+    assert "not known" in str(advice)
 
 
 def test_measure_is_yes_or_no():
