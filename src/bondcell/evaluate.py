@@ -131,7 +131,10 @@ def checked_model(name: object, load: object, options: Mapping[str, Any]) -> Mod
         raise UnknownModel([Violation("model", name, f"one of {', '.join(MODELS)}")])
     model = MODELS[name]
     if not isinstance(load, str) or load not in model.loads:
-        allowed = f"one of {', '.join(model.loads)} for model {name!r}"
+        every = dict.fromkeys(load for own in MODELS.values() for load in own.loads)
+        allowed = f"one of {', '.join(every)}"
+        if isinstance(load, str) and load in every:
+            allowed = f"one of {', '.join(model.loads)} for model {name!r}"
         raise UnsupportedLoad([Violation("load", load, allowed)])
     known = ", ".join(model.options) or "none"
     unknown = [

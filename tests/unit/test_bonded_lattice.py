@@ -79,6 +79,7 @@ def test_equal_pairs_are_evaluated_once(monkeypatch):
         ({"radii": 1e-2}, "centres[0, 1]"),
         ({"centres": [["a", 0, 0]]}, "centres"),
         ({"centres": np.zeros((0, 3))}, "centres"),
+        ({"centres": 1e200 * np.asarray(PAIR)}, "centres[1]"),
         ({"model": "rod"}, "model"),
         ({"poisson_matrix": 0.6}, "poisson_m"),
         ({"box": [[-1, 1], [-1, 1], [-0.005, 1]]}, "centres[0].z"),
@@ -93,7 +94,11 @@ def test_bad_input(changes, field):
 
 def test_supports_of_another_shape():
     net = bondcell.bonded_lattice(PAIR, RADII, 1e-3, model="fsi", **MATERIAL)
-    for held, values, field in ((np.ones((3, 3)), 0.0, "held"), (True, np.ones(2), "values")):
+    for held, values, field in (
+        (np.ones((3, 3)), 0.0, "held"),
+        (True, np.ones(2), "values"),
+        (None, 0.0, "held"),
+    ):
         with pytest.raises(bondcell.InputError) as caught:
             bondcell.solve_lattice(net, held, values)
         assert [violation.field for violation in caught.value.violations] == [field]

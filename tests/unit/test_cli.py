@@ -140,6 +140,7 @@ BAD = {
     "unknown model": (stiffness("--model", "fis"), "did you mean fsi?"),
     "unknown load": (stiffness(load="pull"), "--load = 'pull'"),
     "unknown bc": (stiffness("--model", "fe", bc="glued"), "--bc = 'glued'"),
+    "load of no model": (stiffness("--load", "twist"), "is one of normal, shear, torsion, bending"),
     "load that the model lacks": (stiffness("--load", "shear"), "one of normal for the model fsi"),
     "bc of another load": (
         stiffness("--model", "fe", "--load", "shear", bc="clamped"),

@@ -296,6 +296,13 @@ def test_wrong_values_are_named_all_at_once(changes, expected):
         assert [(field, float(value)) for field, value in found] == expected
 
 
+def test_load_of_no_model_names_all_loads():
+    with pytest.raises(bondcell.UnsupportedLoad, match=r"one of normal, shear, torsion, bending$"):
+        evaluate(study(), model="fsi", load="twist")
+    with pytest.raises(bondcell.UnsupportedLoad, match=r"one of normal for model 'fsi'$"):
+        evaluate(study(), model="fsi", load="shear")
+
+
 def test_missing_input_is_named():
     with pytest.raises(bondcell.InputError, match="gap"):
         evaluate(study().drop_vars("gap"))

@@ -158,6 +158,7 @@ def test_as_few_terms_as_an_error_takes():
         ({"error": "1 %", "window": ("a", 2.0)}, r"error = '1 %'.*\n.*window"),
         ({"terms": 2.5, "window": 3.0}, r"terms = 2.5.*\n.*window"),
         ({"terms": 2, "window": (1.0, np.inf)}, "window"),
+        ({"terms": 1, "window": (1e-300, 1e300)}, r"window = .*\[1e-30, 1e\+30\]"),
     ],
 )
 def test_wrong_reductions_are_refused(arguments, message):

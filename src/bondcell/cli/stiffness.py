@@ -112,13 +112,14 @@ def run(arguments: argparse.Namespace) -> int:
 def _model_violations(models: list[str], load: str) -> list[Violation]:
     from bondcell.models import MODELS
 
-    violations = []
+    known = load in LOADS
+    violations = [] if known else [Violation("--load", load, f"one of {', '.join(LOADS)}")]
     for name in models:
         if name not in MODELS:
             close = get_close_matches(name, MODELS, 1)
             hint = f"; did you mean {close[0]}?" if close else ""
             violations.append(Violation("--model", name, f"one of {', '.join(MODELS)}{hint}"))
-        elif load not in MODELS[name].loads:
+        elif known and load not in MODELS[name].loads:
             able = ", ".join(MODELS[name].loads)
             violations.append(Violation("--load", load, f"one of {able} for the model {name}"))
     return violations

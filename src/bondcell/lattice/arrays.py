@@ -19,6 +19,8 @@ def numbers(field: str, given: object) -> FloatArray:
     array([1., 2.])
     """
     try:
+        if given is None:
+            raise TypeError
         return np.asarray(given, dtype=np.float64)
     except (TypeError, ValueError) as error:
         raise InputError([Violation(field, given, "numbers in rows of one length")]) from error

@@ -16,6 +16,7 @@ MOST_LISTED = 20
 """Overlaps listed one by one; what is beyond is counted."""
 
 _ON_WALL = 1e-9
+_LARGEST = 1e100  # squares of distances have to be numbers
 _WALLS = ("x lower", "x upper", "y lower", "y upper", "z lower", "z upper")
 
 
@@ -102,12 +103,12 @@ def packing(centres: object, radii: object, box: object | None = None) -> Packin
         allowed = "shape (3, 2), lower below upper wall"
         raise InputError([Violation("box", walls.tolist(), allowed)])
     violations = [
-        Violation(f"radii[{k}]", float(size[k]), "(0, inf) m")
-        for k in np.flatnonzero(~((size > 0) & np.isfinite(size)))
+        Violation(f"radii[{k}]", float(size[k]), f"(0, {_LARGEST:g}) m")
+        for k in np.flatnonzero(~((size > 0) & (size < _LARGEST)))
     ]
     violations += [
-        Violation(f"centres[{k}]", where[k].tolist(), "finite numbers")
-        for k in np.flatnonzero(~np.isfinite(where).all(axis=1))
+        Violation(f"centres[{k}]", where[k].tolist(), f"finite numbers below {_LARGEST:g} m")
+        for k in np.flatnonzero(~(np.abs(where) < _LARGEST).all(axis=1))
     ]
     if violations:
         raise InputError(_shortened(violations))

@@ -10,6 +10,7 @@ from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
 from bondcell.prony.best_exponentials import Curve, Exponentials, best_exponentials
 from bondcell.prony.chain import Chain, merged
+from bondcell.relaxing_ranges import TIMES
 
 CHECKED = 80
 """Times a decade at which the error that is told is measured."""
@@ -30,7 +31,7 @@ def reduce_chain(
     count
         Largest number of terms; None: as few as `error` allows.
     window
-        First and last time of interest [s], both positive.
+        First and last time of interest [s], in `TIMES`.
     error
         Largest relative error allowed; None where `count` is given.
 
@@ -104,8 +105,9 @@ def _checked(count: Any, window: Any, error: Any) -> tuple[float, float]:
         pair = np.asarray(window, dtype=float)
     except (TypeError, ValueError):
         pair = np.empty(0)
-    if pair.shape != (2,) or not (np.isfinite(pair).all() and 0 < pair[0] < pair[1]):
-        bad.append(Violation("window", window, "two times [s], 0 < first < last, finite"))
+    if pair.shape != (2,) or not TIMES[0] <= pair[0] < pair[1] <= TIMES[1]:
+        allowed = f"two times [s], 0 < first < last, in [{TIMES[0]:g}, {TIMES[1]:g}]"
+        bad.append(Violation("window", window, allowed))
     if bad:
         raise InputError(bad)
     return float(pair[0]), float(pair[1])
