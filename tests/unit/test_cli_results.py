@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -65,6 +66,16 @@ def test_axis_that_begins_at_zero_is_spread(synthetic):
 
 def rows(text):
     return list(csv.DictReader(io.StringIO(text)))
+
+
+def test_no_table_takes_the_place_of_its_study(result, tmp_path, capsys):
+    before = Path(result).read_bytes()
+    link = tmp_path / "link.csv"
+    link.symlink_to(result)
+    for out in (result, str(link)):
+        assert main(["show", result, "--csv", "-o", out]) == 2
+        assert "another file than those that are read" in capsys.readouterr().err
+    assert Path(result).read_bytes() == before
 
 
 def test_csv_holds_every_value(result, synthetic, tmp_path, capsys):

@@ -137,3 +137,7 @@ def test_command_writes_a_study(study, tmp_path, capsys):
     assert main(["merge", str(out), str(more), "-o", str(tmp_path / "no/c.nc")]) == 2
     assert main(["merge", str(out), str(tmp_path / "none.nc"), "-o", str(tmp_path / "c.nc")]) == 2
     assert "none.nc" in capsys.readouterr().err
+    before = out.read_bytes()
+    assert main(["merge", str(more), str(out), "-o", str(tmp_path / "." / out.name)]) == 2
+    assert "another file than those that are read" in capsys.readouterr().err
+    assert out.read_bytes() == before

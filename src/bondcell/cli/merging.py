@@ -6,6 +6,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from bondcell.cli.targets import overwritten
 from bondcell.errors import InputError, Violation
 
 EXPLANATION = """\
@@ -43,6 +44,8 @@ def run(arguments: argparse.Namespace) -> int:
     target = Path(arguments.output)
     if target.suffix != ".nc" or not target.absolute().parent.is_dir():
         raise InputError([Violation("-o", arguments.output, "a name ending in .nc, in a folder")])
+    if violations := overwritten(arguments.output, arguments.first, arguments.second):
+        raise InputError(violations)
     loads = []
     for path in (arguments.first, arguments.second):
         loads.append(read_loads(path))

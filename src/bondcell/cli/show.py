@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from bondcell.cli.targets import overwritten
 from bondcell.errors import InputError, Violation
 
 if TYPE_CHECKING:
@@ -107,6 +108,8 @@ def _check(arguments: argparse.Namespace) -> None:
         violations.append(Violation("-o", out, "a file, not a folder"))
     elif out is not None and not Path(out).absolute().parent.is_dir():
         violations.append(Violation("-o", out, "a file in an existing folder"))
+    elif out is not None:
+        violations += overwritten(out, arguments.file)
     if arguments.plot and Path(out or "").suffix.lower() not in SUFFIXES:
         allowed = f"a file name that ends in {', '.join(SUFFIXES)}"
         violations.append(Violation("-o", out, allowed))
