@@ -50,9 +50,9 @@ def test_import_loads_nothing_heavy():
     assert not loaded & (HEAVY | {"numpy"})
 
 
-def test_models_need_no_labels_and_no_finite_elements():
+def test_models_need_no_labels_no_finite_elements_and_no_solver():
     loaded = modules_after("from bondcell import MODELS; list(MODELS)")
-    assert not loaded & (HEAVY - {"scipy"})
+    assert not loaded & HEAVY
 
 
 def test_evaluate_needs_no_finite_elements():

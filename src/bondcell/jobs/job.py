@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import atexit
+import gc
 import os
 import sys
 import time
@@ -11,6 +13,9 @@ from contextlib import contextmanager
 
 from bondcell.errors import BondcellError, InputError
 from bondcell.jobs.progress import CLEAR, JOB_FILE
+
+# Imported code lives as long as its process: the last collection would walk it all for 0.2 s.
+atexit.register(gc.freeze)
 
 EXIT_FAILED, EXIT_BAD_INPUT = 1, 2
 PROGRESS_SECONDS = 10.0

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from bondcell.cell import FloatArray
 from bondcell.errors import InputError, Violation
@@ -125,6 +124,8 @@ def _gaps(centres: FloatArray, radii: FloatArray, pairs: NDArray[np.int64]) -> F
 
 
 def _close_pairs(centres: FloatArray, radii: FloatArray, cutoff: float) -> NDArray[np.int64]:
+    from scipy.spatial import cKDTree  # slow to load, and who draws a specimen needs none
+
     reach = 2 * float(radii.max()) + cutoff
     pairs = cKDTree(centres).query_pairs(reach * (1 + 1e-12), output_type="ndarray")
     pairs = np.sort(pairs.astype(np.int64), axis=1)

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import nnls
 
 from bondcell.cell import FloatArray
 from bondcell.prony.bank import Bank
@@ -52,6 +51,8 @@ def sampled_bank(
     values = stiffness(shares)
     reach = np.log10(MARGIN)
     count = int(np.ceil(PER_DECADE * (decades + 2 * reach)))
+    from scipy.optimize import nnls  # slow to load, and the models' banks need none
+
     softness = np.concatenate(([0.0], np.geomspace(1 / MARGIN, MARGIN / low, count)))
     x = shares[:, None]
     table = np.column_stack([np.ones(x.size), x * (1 + softness) / (1 + softness * x)])

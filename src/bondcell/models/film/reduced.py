@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 from bondcell.cell import FloatArray
 from bondcell.models.film.solve import RIDGE, Solved, combined, least_energies, solved
@@ -95,6 +94,8 @@ class Basis:
         least ratio of factors, and ``r . A'^-1 r/alpha`` is a bound; the solution with the largest
         alpha is taken.
         """
+        from scipy.linalg import lapack  # as in `bondcell.models.film.solve.solved`
+
         value, found = _least(combined(self.reduced, factors))
         spread = (factors[:, :, None] * found[:, None, :]).reshape(factors.shape[0], -1)
         rows = self.forces.transpose(0, 2, 1).reshape(spread.shape[1], -1)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import lapack
 
 from bondcell.cell import FloatArray
 
@@ -52,6 +51,8 @@ def solved(matrix: FloatArray, ridge: float = RIDGE) -> Solved:
     With the scaled matrix, b its first column below the first row and S the rest, ``(S + ridge) y =
     -b`` and the energy at that y is ``A_00 + y . b - ridge y . y``: a bound, not an estimate.
     """
+    from scipy.linalg import lapack  # slow to load, and who reads results solves none
+
     scale = 1 / np.sqrt(matrix.diagonal())
     matrix *= scale
     matrix *= scale[:, None]
