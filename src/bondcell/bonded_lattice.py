@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
@@ -15,6 +17,13 @@ from bondcell.lattice.packing import packing
 from bondcell.models import MODELS
 
 _DIGITS = 12
+
+_ARGUMENTS = {
+    "young_i": "young_particle",
+    "poisson_i": "poisson_particle",
+    "young_m": "young_matrix",
+    "poisson_m": "poisson_matrix",
+}
 
 
 def bonded_lattice(
@@ -94,7 +103,14 @@ def bonded_lattice(
         "young_i": young_particle, "poisson_i": poisson_particle,
         "young_m": young_matrix, "poisson_m": poisson_matrix,
     }  # fmt: skip
-    springs = _springs(np.column_stack([sizes, gaps]), material, model)
+    if many := [name for name, value in material.items() if np.ndim(value)]:
+        allowed = "one number, the same for all"
+        raise InputError([Violation(_ARGUMENTS[name], material[name], allowed) for name in many])
+    try:
+        springs = _springs(np.column_stack([sizes, gaps]), material, model)
+    except InputError as error:
+        named = [replace(v, field=_ARGUMENTS.get(v.field, v.field)) for v in error.violations]
+        raise type(error)(named) from None
     bad = np.flatnonzero(~np.isfinite(np.stack(list(springs.values()))).all(axis=0))
     if bad.size:
         allowed = f"pairs of which {model} gives a stiffness"

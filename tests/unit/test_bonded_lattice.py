@@ -80,8 +80,9 @@ def test_equal_pairs_are_evaluated_once(monkeypatch):
         ({"centres": [["a", 0, 0]]}, "centres"),
         ({"centres": np.zeros((0, 3))}, "centres"),
         ({"centres": 1e200 * np.asarray(PAIR)}, "centres[1]"),
+        ({"young_particle": [3e10, 2e10]}, "young_particle"),
         ({"model": "rod"}, "model"),
-        ({"poisson_matrix": 0.6}, "poisson_m"),
+        ({"poisson_matrix": 0.6}, "poisson_matrix"),
         ({"box": [[-1, 1], [-1, 1], [-0.005, 1]]}, "centres[0].z"),
     ],
 )
