@@ -103,7 +103,7 @@ class Advice:
     def __str__(self) -> str:
         name = model_phrase(self.model)
         where = "inside" if self.inside_range else "outside"
-        said = {"map": "expected", "measured": "measured", "none": "its own estimate:"}
+        said = {"map": "expected", "measured": "measured", "none": "by its tolerance"}
         lines = [
             f"Take {name} (model={self.model!r}): error {said[self.source]} "
             f"{percent(self.expected_error)}, wanted {percent(self.wanted)}; "

@@ -227,6 +227,12 @@ def test_a_study_is_a_mapping(study):
         bondcell.advise(study)
 
 
+def test_error_off_the_map_is_what_is_asked_of_the_reference():
+    advice = bondcell.advise(BASE | {"young_i": 1.0})
+    assert (advice.model, advice.source) == ("fe", "none")
+    assert "error by its tolerance 1e-4 %, wanted 1 %" in str(advice)
+
+
 def test_measured_reference_is_as_good_as_it_says(monkeypatch):
     module = import_module("bondcell.by_geometry")
     real = module.solve_points
