@@ -85,4 +85,4 @@ def batch_name(rows: tuple[Row, ...], hashes: Hashes) -> str:
     key = blake2b(digest_size=8, person=f"bondcell batch {SCHEME}".encode())
     key.update(json.dumps([row.as_list() for row in rows]).encode())
     key.update(np.ascontiguousarray(hashes, dtype="<u8").tobytes())
-    return f"{rows[0].method}_{key.hexdigest()}"
+    return f"{rows[0].file_prefix}_{key.hexdigest()}"

@@ -153,7 +153,7 @@ class _Coverage:
         groups: dict[tuple[str, bytes], list[Row]] = {}
         for row, left in self._left.items():
             if left.any():
-                groups.setdefault((row.method, left.tobytes()), []).append(row)
+                groups.setdefault((row.file_prefix, left.tobytes()), []).append(row)
         for rows in groups.values():
             yield tuple(rows), np.flatnonzero(self._left[rows[0]])
 

@@ -49,7 +49,7 @@ class Row:
     options: tuple[tuple[str, Any], ...] = ()
 
     @property
-    def method(self) -> str:
+    def file_prefix(self) -> str:
         """What the files of the row's batches begin with."""
         return self.model if self.kind == REFERENCE else f"{self.kind}_{self.load}"
 

@@ -22,8 +22,8 @@ from bondcell.report.interactive.figure import (
     texts,
 )
 from bondcell.report.interactive.look import (
+    MARKER,
     POWERS,
-    TIP,
     colours,
     dashes,
     decades,
@@ -152,7 +152,7 @@ def _chart(names: Sequence[str], joined: Sequence[str], points: pd.DataFrame) ->
     ]
     upward = base.transform_filter("isValid(datum.highest)").mark_rule(strokeWidth=1.5)
     line = base.transform_filter(f"indexof({list(joined)}, datum.name) >= 0")
-    marks = base.mark_point(size=TIP, strokeWidth=1.6, filled=True, opacity=1)
+    marks = base.mark_point(size=MARKER, strokeWidth=1.6, filled=True, opacity=1)
     low = float(points["error"].clip(lower=LEAST_ERROR).min())
     high = float(np.nanmax([points["error"].max(), points["highest"].max(), 1.0]))
     domain = (low / 2, 2 * high)

@@ -11,8 +11,8 @@ import altair as alt
 from bondcell.report.interactive.controls import ENCODING, Control, Option, logarithmic
 from bondcell.report.interactive.figure import ONE, ROWS, SHOWN, Axis, Chart, Switch
 from bondcell.report.interactive.look import (
+    MARKER,
     POWERS,
-    TIP,
     colours,
     dashes,
     decades,
@@ -114,7 +114,7 @@ def explorer_chart(
     base = alt.Chart(alt.NamedData(ROWS)).transform_filter(" && ".join(conditions))
     base = base.transform_calculate(**derived)
     still = alt.Chart(alt.NamedData(ONE)).mark_rule().encode(y=alt.YDatum(1))
-    points = base.mark_point(size=TIP, strokeWidth=1.6).encode(
+    points = base.mark_point(size=MARKER, strokeWidth=1.6).encode(
         shape=shapes(names),
         stroke=alt.Stroke(**colours(names)),
         fill=alt.condition("isValid(datum.flag)", alt.value("#fff"), alt.Fill(**colours(names))),
@@ -122,8 +122,8 @@ def explorer_chart(
     )
     layers = [points]
     if with_lines:
-        dotted = [name for name in names if look_of(name)["linestyle"] == "none"]
-        line = base.transform_filter(f"indexof({dotted}, datum.name) < 0").mark_line(strokeWidth=2)
+        unlined = [name for name in names if look_of(name)["linestyle"] == "none"]
+        line = base.transform_filter(f"indexof({unlined}, datum.name) < 0").mark_line(strokeWidth=2)
         colour = alt.Color(**colours(names))
         layers.insert(0, line.encode(color=colour, strokeDash=dashes(names)))
     parameters = [

@@ -117,7 +117,7 @@ def decades(low: float, high: float, most: int = 9) -> list[float] | None:
     return [float(f"1e{power}") for power in range(first, last + 1, step)]
 
 
-TIP = 80.0
+MARKER = 80.0
 """Size of a marker [px^2]."""
 
 
