@@ -14,7 +14,7 @@ from bondcell.fem.cell_mesh import Geometry, Grading, build_cell_mesh
 from bondcell.fem.materials import Materials
 from bondcell.fem.particle_lag import particle_lag
 from bondcell.fem.scouts import Scouts
-from bondcell.fem.strain import SWIRL
+from bondcell.fem.strain import LATERAL, SWIRL
 from bondcell.fem.structured import CellSolver, Load
 
 LOWEST, HIGHEST = 4, 14
@@ -44,6 +44,10 @@ THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
 HELD_ROUND_OFF, HELD_WORST = 2e-8, 3e-6
 """The same, to be added where the side is held, over the particles' modulus ratio: all volume has
 to go into them, and the stiffness is theirs."""
+
+BENT_ROUND_OFF, SOFTER = 1e-11, 1.5
+"""Where the cell bends: bound of it at unit modulus ratio, growing with the square of the gap in
+radii of the cylinder, and power of the ratio with which it grows beside softer particles."""
 
 FREE_SHARE = 0.1
 """Part of these bounds that cells with free sides reach."""
@@ -202,7 +206,7 @@ def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArr
     """Nearly incompressible films are badly conditioned, the more the thinner.
 
     Where the sides are free to move, volume finds its way and a tenth was measured at most; torsion
-    does not change it at all.
+    does not change it at all. Long cells bend much more easily than they strain otherwise.
     """
     if load.whole.mode is SWIRL:
         return np.full(materials.count, ROUND_OFF)
@@ -216,4 +220,9 @@ def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArr
         largest = np.minimum(largest + softness * np.sqrt(thinness), HELD_WORST)
     with np.errstate(divide="ignore"):
         bulk_to_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson))
-    return np.maximum(share * np.minimum(2 * ROUND_OFF * bulk_to_shear, largest), ROUND_OFF)
+    least = ROUND_OFF * np.ones(materials.count)
+    if load.whole.mode is LATERAL:
+        slenderness = (1 + geometry.gap / geometry.cylinder_radius) ** 2
+        softest = np.minimum(materials.ratios.min(axis=1), 1.0)
+        least = BENT_ROUND_OFF * slenderness / softest**SOFTER
+    return np.maximum(share * np.minimum(2 * ROUND_OFF * bulk_to_shear, largest), least)

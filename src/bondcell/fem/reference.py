@@ -11,6 +11,14 @@ from bondcell.cell import Cell, FloatArray
 from bondcell.fem.cell_mesh import Geometry, Grading
 from bondcell.fem.ladder import Ladder
 from bondcell.fem.materials import Materials
+from bondcell.fem.slender import (
+    SHARE,
+    BeamStiffness,
+    is_slender,
+    lengthened,
+    lengthened_error,
+    shortened,
+)
 from bondcell.fem.structured import Load, find_load, geometry_of
 from bondcell.fem.threads import one_thread
 from bondcell.status import Status
@@ -102,6 +110,8 @@ def solve(
     """
     entry = find_load(load, bc)
     cell = cell.ravel()
+    if is_slender(cell, load):
+        return _solve_slender(cell, load, tolerance)
     geometry, materials = geometry_of(cell), Materials.of(cell)
     answer = _empty(materials.count)
     blocked = _is_blocked(materials) & ((load, bc) == ("normal", "confined"))
@@ -120,6 +130,41 @@ def solve(
                 ladder.error_estimate += cut
                 _report(ladder, at, tolerance, answer)
     return answer
+
+
+def _solve_slender(cell: Cell, load: str, tolerance: float) -> Reference:
+    """Solve slender cells by short ones; what is reported of the solves is theirs."""
+    short = [
+        [solve(own, motion, tolerance=SHARE * tolerance) for motion in ("shear", "bending")]
+        for own in shortened(cell)
+    ]
+    parts = [part for pair in short for part in pair]
+    values = [BeamStiffness(s.stiffness, b.stiffness, b.coupling) for s, b in short]
+    errors = [_beam_errors(*pair) for pair in short]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        result, error = lengthened(cell, *values), lengthened_error(cell, *values, *errors)
+    stiffness, estimate = getattr(result, load), getattr(error, load)
+    known = np.isfinite(stiffness) & (stiffness > 0) & np.isfinite(estimate)
+    failed = np.max([np.maximum(part.status, Status.limit_exceeded) for part in parts], axis=0)
+    met = np.where(estimate <= tolerance, Status.ok, Status.tolerance_not_met)
+    return Reference(
+        stiffness=np.where(known, stiffness, np.nan),
+        error_estimate=np.where(known, estimate, np.nan),
+        status=np.where(known, met, failed).astype(np.int8),
+        dof=np.max([part.dof for part in parts], axis=0),
+        order=np.max([part.order for part in parts], axis=0),
+        seconds=np.sum([part.seconds for part in parts], axis=0),
+        way=np.max([part.way for part in parts], axis=0),
+        coupling=np.where(known & (load == "bending"), result.coupling, np.nan),
+        reduction_error=np.max([part.reduction_error for part in parts], axis=0),
+    )
+
+
+def _beam_errors(shear: Reference, bending: Reference) -> BeamStiffness:
+    """Relative errors; the coupling's absolute one is no more than their geometric mean."""
+    errors = shear.error_estimate, bending.error_estimate
+    mean = np.sqrt(errors[0] * shear.stiffness * errors[1] * bending.stiffness)
+    return BeamStiffness(*errors, mean / np.abs(bending.coupling))
 
 
 def _empty(count: int) -> Reference:
