@@ -2,11 +2,13 @@
 
 Own work is what each job says it took, imports excluded, once it had started. `python
 benchmarks/overhead.py` runs the study in a temporary folder; with a file of a run's output, its
-wall time and cores it only counts: `python benchmarks/overhead.py out.log 165 2`.
+wall time and cores it only counts: `python benchmarks/overhead.py out.log 165 2`. On a machine that
+others use, compare processor times, which the run in a folder of its own prints as well.
 """
 
 import os
 import re
+import resource
 import subprocess
 import sys
 import tempfile
@@ -52,6 +54,8 @@ def run() -> tuple[str, float, int]:
             check=True,
         )
         wall = time.perf_counter() - start
+        used = resource.getrusage(resource.RUSAGE_CHILDREN)
+        print(f"{used.ru_utime + used.ru_stime:.0f} s of processor time, all processes")
         lines = log.read_text() if log.is_file() else ""
         return lines + done.stdout + done.stderr, wall, cores
 
