@@ -78,3 +78,17 @@ def test_values_of_unknown_error_are_withheld():
     answer = solve(cell, "bending")
     assert answer.status[0] == Status.limit_exceeded or answer.error_estimate[0] <= LARGEST_ERROR
     assert np.isnan(answer.stiffness[0]) == (answer.status[0] == Status.limit_exceeded)
+
+
+@pytest.mark.parametrize(
+    ("young", "gap"), [(1e-2, 15.0), pytest.param(1e-6, 1.0, marks=pytest.mark.slow)]
+)
+def test_estimates_cover_the_round_off_of_bending(young, gap):
+    """What a change of units of length does is round-off, which soft particles raise."""
+    scales = np.array([1.0, 1.7])
+    answers = [
+        solve(cell_of(radius_i=s, gap=gap * s, young_i=young, poisson_m=-0.9), "bending")
+        for s in scales
+    ]
+    values = np.concatenate([answer.stiffness for answer in answers]) / scales**3
+    assert np.ptp(values) < 2 * answers[0].error_estimate[0] * np.mean(values)

@@ -45,9 +45,10 @@ HELD_ROUND_OFF, HELD_WORST = 2e-8, 3e-6
 """The same, to be added where the side is held, over the particles' modulus ratio: all volume has
 to go into them, and the stiffness is theirs."""
 
-BENT_ROUND_OFF, SOFTER = 1e-11, 1.5
+BENT_ROUND_OFF, SOFTER, SOFTEST = 2e-11, 1.5, 2e-6
 """Where the cell bends: bound of it at unit modulus ratio, growing with the square of the gap in
-radii of the cylinder, and power of the ratio with which it grows beside softer particles."""
+radii of the cylinder, and power of the ratio with which it grows beside softer particles, down to
+the last ratio; the elements at their feet shrink no further."""
 
 FREE_SHARE = 0.1
 """Part of these bounds that cells with free sides reach."""
@@ -223,6 +224,6 @@ def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArr
     least = ROUND_OFF * np.ones(materials.count)
     if load.whole.mode is LATERAL:
         slenderness = (1 + geometry.gap / geometry.cylinder_radius) ** 2
-        softest = np.minimum(materials.ratios.min(axis=1), 1.0)
+        softest = np.clip(materials.ratios.min(axis=1), SOFTEST, 1.0)
         least = BENT_ROUND_OFF * slenderness / softest**SOFTER
     return np.maximum(share * np.minimum(2 * ROUND_OFF * bulk_to_shear, largest), least)
