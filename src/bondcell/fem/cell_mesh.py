@@ -56,6 +56,8 @@ class Grading:
         Where refinement toward singular corners of held end planes stops, in radii; 0 for none.
     corner_growth
         Ratio of neighbouring sizes toward such corners.
+    tallest
+        Height of the block at a refined rim, over its width at most.
     """
 
     growth: float = 4.0
@@ -64,6 +66,7 @@ class Grading:
     foot_growth: float = 6.0
     corner: float = 0.0
     corner_growth: float = 6.0
+    tallest: float = 2.0
 
 
 @dataclass(frozen=True)
@@ -144,10 +147,11 @@ def build_cell_mesh(geometry: Geometry, grading: Grading, half: bool) -> CellMes
     radii = [geometry.radius_i] if half else [geometry.radius_i, geometry.radius_j]
     sides = _side_radii(radii, geometry.cylinder_radius, grading)
     halves = [
-        _half_cell(name, radius, side, geometry, grading)
+        _half_cell(name, radius, side, geometry.cylinder_radius - max(sides), geometry, grading)
         for name, radius, side in zip("ij", radii, sides, strict=False)
     ]
-    columns = _columns(halves, [0.0, *sides, geometry.cylinder_radius])
+    rim = _rim_columns(sides, geometry.cylinder_radius, grading)
+    columns = _columns(halves, [0.0, *sides, *rim, geometry.cylinder_radius])
     for part in halves:
         part.set_columns(columns)
         add_particle(part)
@@ -175,14 +179,36 @@ def _side_radii(radii: list[float], cylinder_radius: float, grading: Grading) ->
     return sides
 
 
+def _rim_columns(sides: list[float], cylinder_radius: float, grading: Grading) -> list[float]:
+    """Columns whose distance from a refined rim grows, where blocks stand beside a sphere's own.
+
+    What the rim's corner disturbs reaches as far as the matrix is thick there, not only as far as
+    its own narrow block.
+    """
+    width = cylinder_radius - max(sides)
+    if not grading.corner or width <= 0:
+        return []
+    room = (cylinder_radius - min(sides)) / (1.5 * width)
+    count = int(np.log(room) / np.log(grading.corner_growth)) if room > 1 else 0
+    return [cylinder_radius - width * grading.corner_growth**k for k in range(1, count + 1)]
+
+
 def _half_cell(
-    name: str, radius: float, side_radius: float, geometry: Geometry, grading: Grading
+    name: str,
+    radius: float,
+    side_radius: float,
+    rim: float,
+    geometry: Geometry,
+    grading: Grading,
 ) -> HalfCell:
     curvature = 1 / geometry.radius_i + 1 / geometry.radius_j
     film = float(np.sqrt(2 * geometry.gap / curvature)) / radius
     annulus = geometry.cylinder_radius - radius
     # Narrow annuli need grading like the film; below the cut they are resolved no further.
     foot = max(grading.foot, float(np.sqrt(2 * annulus / radius)))
+    if grading.corner and rim > 0:
+        # The block at the refined rim is that wide; what ends there dies out as far from it.
+        foot = min(foot, grading.tallest * rim / radius)
     foot_breaks = graded_breaks(foot, FOOT_ANGLE, grading.foot_growth, grading.largest)
     tip_breaks = graded_breaks(TIP * film, MIDDLE_ANGLE, grading.growth, grading.largest)
     corner_breaks: list[float] = []

@@ -94,7 +94,14 @@ def compare(cell: Cell, load: str, bc: str, tolerance: float) -> Comparison:
     seconds = time.perf_counter() - started
     usual = find_load(load, bc).grading
     finer = replace(
-        usual, growth=3.0, largest=0.3, foot=usual.foot / 4, foot_growth=4, corner=usual.corner / 30
+        usual,
+        growth=3.0,
+        largest=0.3,
+        foot=usual.foot / 4,
+        foot_growth=4.0,
+        corner=usual.corner / 30,
+        corner_growth=4.0,
+        tallest=1.0,
     )
     order = min(int(answer.order[0]) + HIGHER, HIGHEST)
     before, true = (
