@@ -38,7 +38,7 @@ REDUCTION = 20
 ROUND_OFF = 1e-11
 """Relative round-off of one solve."""
 
-THIN_ROUND_OFF, WORST_ROUND_OFF = 6e-9, 2e-7
+THIN_ROUND_OFF, WORST_ROUND_OFF = 1.5e-8, 4e-7
 """Bounds of it where ``kappa/mu`` is large: at a gap of one radius, and in the thinnest films."""
 
 HELD_ROUND_OFF, HELD_WORST = 2e-8, 3e-6
@@ -50,7 +50,7 @@ BENT_ROUND_OFF, SOFTER, SOFTEST = 2e-11, 1.5, 2e-6
 radii of the cylinder, and power of the ratio with which it grows beside softer particles, down to
 the last ratio; the elements at their feet shrink no further."""
 
-FREE_SHARE = 0.1
+FREE_SHARE = 0.05
 """Part of these bounds that cells with free sides reach."""
 
 SAFETY = 3.0
@@ -206,7 +206,7 @@ def _step(guess: FloatArray, wanted: float) -> int:
 def _round_off(geometry: Geometry, materials: Materials, load: Load) -> FloatArray:
     """Nearly incompressible films are badly conditioned, the more the thinner.
 
-    Where the sides are free to move, volume finds its way and a tenth was measured at most; torsion
+    Where the sides are free to move, volume finds its way and little was measured; torsion
     does not change it at all. Long cells bend much more easily than they strain otherwise.
     """
     if load.whole.mode is SWIRL:
