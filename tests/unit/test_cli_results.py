@@ -195,6 +195,17 @@ def test_compare_as_json(result, tmp_path, capsys):
     assert one["allowed"] == pytest.approx(2e-7, rel=1e-3)
 
 
+def test_compare_a_grid_with_a_design(result, synthetic, tmp_path, capsys):
+    """An axis of one file is a coordinate along the samples of the other."""
+    scattered = synthetic.figure4.isel(poisson_m=[0, 1, 0]).rename(poisson_m="sample")
+    poisson = ("sample", scattered["sample"].values)
+    scattered = scattered.assign_coords(sample=[0, 1, 2], poisson_m=poisson)
+    design = str(write_dataset(scattered, tmp_path / "design.nc"))
+    for pair in ([result, design], [design, result]):
+        assert main(["compare", *pair]) == 1
+        assert "sample" in capsys.readouterr().out
+
+
 def test_compare_other_points(synthetic, result, tmp_path, capsys):
     fewer = write_dataset(synthetic.figure4.isel(modulus_ratio=slice(3)), tmp_path / "fewer.nc")
     assert main(["compare", result, str(fewer)]) == 1

@@ -6,8 +6,10 @@ from itertools import pairwise
 
 import pandas as pd
 import pytest
+import xarray as xr
 
 from bondcell.errors import DataError
+from bondcell.evaluate import evaluate
 from bondcell.figures import draw_scene
 from bondcell.report import write_report
 from bondcell.report.convergence_part import convergence_findings
@@ -17,6 +19,7 @@ from bondcell.report.sweep_findings import sweep_findings
 from bondcell.report.symbols import with_subscripts
 from bondcell.results.accuracy import accuracy_table
 from bondcell.scenes.parsing import parse_scene
+from bondcell.scenes.study import build_study
 from bondcell.status import Status
 from bondcell.storage import write_dataset
 
@@ -163,6 +166,26 @@ def test_a_folder_without_results(tmp_path):
     with pytest.raises(DataError, match="a folder of results"):
         write_report(tmp_path, tmp_path / "page.html")
     assert not list(tmp_path.iterdir())
+
+
+def test_a_table_of_points_needs_no_table(tmp_path):
+    """The page made from results alone names the columns that the file has."""
+    points = tmp_path / "points.csv"
+    points.write_text("gap, young_m\n0.5 mm, 1 MPa\n1 mm, 2 MPa\n")
+    given = {
+        "title": "Rows",
+        "cell": CELL | {"poisson_m": 0.3},
+        "design": {"table": points.name},
+        "models": ["fsi", "generatrix"],
+    }
+    scene = parse_scene(given, name="rows", tables=tmp_path)
+    inputs = build_study(scene)
+    study = xr.concat([evaluate(inputs, model) for model in scene.models], "model")
+    study = study.assign_coords(model=list(scene.models)).assign_attrs(parameters=scene.given_json)
+    write_dataset(study, tmp_path / "results" / "rows" / "study.nc")
+    points.unlink()
+    page = write_report(tmp_path / "results", tmp_path / "page.html").path.read_text("utf-8")
+    assert re.search(r"2 of the table points\.csv: \w.* and \w", text_of(page))
 
 
 def test_results_of_another_make_are_named(results, synthetic, tmp_path):

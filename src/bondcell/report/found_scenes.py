@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bondcell.errors import DataError, Violation
+from bondcell.results.view import SAMPLE, parameters
 from bondcell.scenes.parsing import recorded_scene
 from bondcell.storage import read_dataset
 
@@ -34,11 +35,17 @@ def found_scenes(results: Path) -> list[Scene]:
 
 
 def _scene(path: Path) -> Scene:
-    given = read_dataset(path).attrs.get("parameters")
+    study = read_dataset(path)
+    given = study.attrs.get("parameters")
     if given is None:
         wanted = "the parameters of the scene, as bondcell writes them"
         raise DataError([Violation("parameters", "no such attribute", wanted)], str(path))
-    return recorded_scene(str(given), path.parent.name)
+    scene = recorded_scene(str(given), path.parent.name)
+    if scene.design is not None and scene.design.table is not None:
+        # The table may be gone or have grown; the file has the rows that were computed.
+        names = [name for name in parameters(study) if study[name].dims == (SAMPLE,)]
+        scene.design.set_values({name: study[name].values for name in names})
+    return scene
 
 
 def _rank(scene: Scene) -> int:

@@ -127,7 +127,7 @@ def _is_aside(name: str) -> bool:
 
 def _axis(group: str, dim: str, first: xr.Dataset, second: xr.Dataset) -> Iterator[Difference]:
     """Positions that only one of the files has."""
-    if dim not in first.coords or dim not in second.coords:
+    if dim not in first.indexes or dim not in second.indexes:
         return
     one, other = first.indexes[dim], second.indexes[dim]
     only = [len(one.difference(other)), len(other.difference(one))]
