@@ -135,6 +135,8 @@ def test_tables_are_read_to_the_last_bit(tmp_path):
     [
         (None, "design.table points.csv", "an existing file"),
         ("", "design.table points.csv", "1 to 10000000 rows"),
+        ("gap;young_m\n0,5 mm;1 MPa\n", "design.table points.csv: first line", "commas between"),
+        ("gap\tyoung_m\n1\t2\n", "design.table points.csv: first line", "commas between"),
         ("gap,gap\n1,2\n", "design.table points.csv.gap", "each column once"),
         ("gap,young_m\n1,2\n3\n", "design.table points.csv.1", "2, one for each column"),
         ("gap\n1_0\n", "design.table points.csv.gap.0", "a length"),

@@ -252,6 +252,18 @@ def test_particles_and_losses(synthetic):
     assert "cementation at 25 (diverges)" in text
 
 
+def test_particles_have_no_headline_where_part_of_the_sweep_does_not_show_them(synthetic):
+    """A sweep whose ratios end too early at one Poisson's ratio speaks for the other alone."""
+    short = synthetic.figure4.copy(deep=True)
+    short["stiffness"].loc[{"model": "fe", "poisson_m": 0.46}] *= short["modulus_ratio"]
+    finding = next(f for f in findings(short) if "particles no longer matter" in f.text)
+    assert "shows it at 3 of 4 combinations" in finding.text
+    assert not finding.key
+    full = next(f for f in findings(synthetic.figure4) if "no longer matter" in f.text)
+    assert full.key
+    assert "combinations" not in full.text
+
+
 def test_what_lies_outside_a_range_or_a_tolerance_is_told(synthetic):
     assert "outside" not in said(synthetic.figure4)
     assert "are sure to 1e-7 (relative" in said(synthetic.figure4)

@@ -118,7 +118,9 @@ def test_report_explains_the_flags(scene, folder, loads, table):
     words = " ".join(finding.text for finding in stability_findings(table, study))
     assert f"of {len(table)} points are within the tolerance" in words
     summary, worst = stability_lines(table, study)
-    assert FLAGS[Status.ok] in {line[2] for line in summary.lines}
+    assert summary.header[1:4] == ["reference", "flag", "which means"]
+    assert {line[1] for line in summary.lines} == {"finite elements"}
+    assert FLAGS[Status.ok] in {line[3] for line in summary.lines}
     assert len(worst.lines) == len(table)
     study, *others = loads.values()
     drawn = draw_scene(scene, study, None, folder / scene.name / "figures", others)

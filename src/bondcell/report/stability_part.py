@@ -14,7 +14,7 @@ from bondcell.report.tables import Table
 from bondcell.results.stability import FLAGS, stability_summary
 from bondcell.results.view import axis_unit
 from bondcell.status import Status
-from bondcell.wording import at, listed, number, percent, quantity, symbol
+from bondcell.wording import at, listed, model_name, number, percent, quantity, symbol
 
 MOST_POINTS = 20
 """Points of the table of the worst ones."""
@@ -124,6 +124,7 @@ def _summary(table: pd.DataFrame) -> Table:
     lines = [
         [
             str(row.load),
+            model_name(str(row.reference)),
             str(row.status).replace("_", " "),
             FLAGS[Status[str(row.status)]],
             str(row.points),
@@ -133,8 +134,9 @@ def _summary(table: pd.DataFrame) -> Table:
         ]
         for row in stability_summary(table).itertuples()
     ]
-    header = ["load", "flag", "which means", "points", "largest estimate", "median time", "longest"]
-    return Table("Points of the reference by flag.", header, lines, names=3)
+    header = ["load", "reference", "flag", "which means", "points", "largest estimate"]
+    header += ["median time", "longest"]
+    return Table("Points of the reference by flag.", header, lines, names=4)
 
 
 def _worst(table: pd.DataFrame, study: xr.Dataset) -> Table:

@@ -73,6 +73,13 @@ def particles(study: xr.Dataset) -> Iterator[Finding]:
             f" The paper puts this at {number(PAPER_RATIO)}; there K_n is still "
             f"{listed(shortfalls)} below that limit."
         )
+    if len(known) < len(table):
+        text += (
+            f" The sweep shows it at {len(known)} of {len(table)} combinations of a method and the "
+            f"other axes; at the rest its ratios end too early or lie too far apart."
+        )
+        yield Finding(text)
+        return
     key = f"{symbol(RATIO_AXIS)} ≥ {_range(known['ratio_from'])}"
     brief = f"The particles matter, by more than 1 % of K_n, up to {listed(starts)}"
     brief += f"; the paper puts this at {number(PAPER_RATIO)}." if lowest > PAPER_RATIO else "."

@@ -22,6 +22,9 @@ TABLE_RULE = "a file name beside the scene that ends in .csv or .nc"
 MOST_SHOWN = 5
 """Wrong values of a column that are named."""
 
+SEPARATORS = (";", "\t", "|")
+"""What other programs put between columns, spreadsheets where decimals have a comma among them."""
+
 _INFINITE = ("young_i", "young_j", "modulus_ratio")
 
 
@@ -83,6 +86,9 @@ def _csv(path: Path) -> tuple[dict[str, Any], list[Violation]]:
     with path.open(encoding="utf-8-sig", newline="") as file:
         rows = [row for row in csv.reader(file, skipinitialspace=True) if row]
     names = [name.strip() for name in rows[0]] if rows else []
+    if any(mark in name for name in names for mark in SEPARATORS):
+        words = "names of columns with commas between them, decimals with a point"
+        return {}, [Violation(f"{path.name}: first line", ",".join(names)[:100], words)]
     twice = sorted({name for name in names if names.count(name) > 1})
     violations = [Violation(f"{path.name}.{name}", "twice", "each column once") for name in twice]
     ragged = [(i, len(row)) for i, row in enumerate(rows[1:]) if len(row) != len(names)]

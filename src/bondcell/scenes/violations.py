@@ -23,6 +23,9 @@ _PLAIN = {
     "missing": "a value: the key is required",
 }
 
+_BLOCK = ("model_type", "model_attributes_type")
+"""What the library calls something else in the place of a block."""
+
 _TAGS = ("list", "range", "[key]")
 """Marks that the library puts into a path besides the keys of the file."""
 
@@ -108,6 +111,8 @@ def _allowed(record: Mapping[str, Any], path: KeyPath, root: type[Block]) -> str
         close = get_close_matches(str(path[-1]), keys, 1)
         hint = f"; did you mean {close[0]}?" if close else ""
         return f"one of the keys {', '.join(keys)}{hint}"
+    if kind in _BLOCK and not isinstance(record["input"], Mapping):
+        return f"{_PLAIN[kind]}: {', '.join(known_keys(root, path))}"
     if kind == "literal_error":
         return str(context["expected"])
     return _PLAIN.get(kind, str(record["msg"]))

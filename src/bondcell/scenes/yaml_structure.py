@@ -15,6 +15,8 @@ MOST_LEVELS = 20
 CORE = "tag:yaml.org,2002:"
 """What the tags of YAML's own types begin with."""
 
+DECIMALS = "decimals with a point, as in 7.5 mm: in braces a comma ends a value"
+
 TYPES = "mappings, lists, text, numbers, true and false"
 
 _KNOWN = {CORE + name for name in ("null", "bool", "int", "float", "str", "seq", "map")}
@@ -87,15 +89,18 @@ class _Walk:
         head = f"{path}." if path else ""
         if isinstance(node, yaml.MappingNode):
             seen: set[str] = set()
-            return [(head + self._key(key, head, seen), value) for key, value in node.value]
+            return [(head + self._key(key, value, head, seen), value) for key, value in node.value]
         if isinstance(node, yaml.SequenceNode):
             return [(f"{head}{i}", item) for i, item in enumerate(node.value)]
         return []
 
-    def _key(self, key: yaml.Node, head: str, seen: set[str]) -> str:
+    def _key(self, key: yaml.Node, value: yaml.Node, head: str, seen: set[str]) -> str:
         name = str(key.value) if isinstance(key, yaml.ScalarNode) else kind_of(key)
         line = f"line {key.start_mark.line + 1}"
-        if not isinstance(key, yaml.ScalarNode) or key.tag != CORE + "str":
+        if name[:1].isdigit() and value.tag == CORE + "null":
+            # {radius_i: 7,5 mm} is to YAML a radius of 7 and a key "5 mm".
+            self._complain(head + name, name, f"{DECIMALS} ({line})")
+        elif not isinstance(key, yaml.ScalarNode) or key.tag != CORE + "str":
             self._complain(head + name, name, f"a key that is a word ({line})")
         elif name in seen:
             self._complain(head + name, name, f"each key once; it stands again in {line}")
